@@ -105,6 +105,24 @@ def test_a_parameter_is_named_as_its_option(run, parameter, low, high):
     assert all(low < side < high for side in sides)
 
 
+def test_the_stiffness_that_is_sought_need_not_be_given(run):
+    """2 (b − B)/T of the paddle, B typed or none; the report has the wall that is proved."""
+    assert "environment wall: K = 300 N/m" in run("limit haptic-paddle").words
+    found = run("limit haptic-paddle --virtual-damping 0.05 --json").json
+    assert found["proved_passive_N_per_m"] == pytest.approx(200, rel=0.01)
+    assert "needs --stiffness" in run("limit haptic-paddle --type maxwell", 2).err
+
+
+def test_the_room_of_a_proof_ends_a_search(run):
+    """A delay of 120 samples is the last that is decided: it is printed as such, and check says the same."""
+    loop = "--damping 20 --rate '10 kHz' --stiffness 100"
+    said = run(f"limit {loop} --parameter delay", 3).words
+    (last,) = re.findall(r"delay: ([\d.]+ ms) is proved passive", said)
+    assert 11.9 < float(last.split()[0]) < 12.1
+    assert re.search(r"beyond the search ended at 12\.\d* ms: .*is 121; at most 120", said)
+    run(f"check {loop} --delay '{last}'")
+
+
 def test_one_side_is_status_three(run):
     """Before no wall at all every damping of the device is passive."""
     out = run("limit haptic-paddle --stiffness 0 --parameter damping --effort 0.5 --all", 3).out

@@ -15,8 +15,17 @@ from gain_files import written
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.data.gains import check_controllers, passive_gains, read_controllers
+from zwidth.data.gains import (
+    Controllers,
+    borne_impedance,
+    check_controllers,
+    passive_gains,
+    read_controllers,
+)
+from zwidth.data.gains.controllers import is_of_controllers
+from zwidth.data.gains.file import read_table
 from zwidth.data.gains.passive import PassiveGains
+from zwidth.model.arms import read_arm
 
 FRANKA = """
 /**:
@@ -62,6 +71,21 @@ arm:
 /**: {impedance: {ros__parameters: {k_gains: [500.0], d_gains: [30.0]}}}
 """
 COMPLIANCE = "c: {ros__parameters: {stiffness: {trans_x: 500, trans_y: 500, trans_z: 500}}}"
+PID = """
+robot:
+  states: {type: joint_state_controller/JointStateController, publish_rate: 50}
+  shoulder: {type: effort_controllers/JointPositionController, joint: j1, pid: {p: 90.0, d: 0.4}}
+  wheel: {type: effort_controllers/JointVelocityController, joint: j2, pid: {p: 2.0}}
+  rail: {type: position_controllers/JointTrajectoryController, gains: {j3: {p: 7}}}
+"""
+RATIOS = "joints: {j1: {kp: 80, damping_ratio: 0.25}, j2: {kp: 900, damping_ratio: 1}}"
+TASK = """
+end:
+  ros__parameters:
+    task: {k_pos_x: 400, k_pos_y: 300, k_pos_z: 200, d_pos_y: 7,
+           k_rot_x: 30, k_rot_y: 20, k_rot_z: 10, d_rot_z: -1}
+    nullspace: {stiffness: 2.0}
+"""
 FORCE = "c: {ros__parameters: {solver: {error_scale: 0.5}, pd_gains: {trans_x: {p: 0.05}, rot_z: {p: 1.5}}}}"
 
 
@@ -119,9 +143,54 @@ def test_an_impedance_is_a_wall_at_the_end(tmp_path):
     assert any("difference of two readings" in note for note in one.notes(0))
 
 
+def laws(found: Controllers) -> list[tuple[str, float, float]]:
+    return [(law.name, float(law.stiffness), float(law.damping)) for law in found.joints]
+
+
+def test_what_a_file_has_beside_is_told(tmp_path):
+    """Of several controllers, and of ROS 1, whose gains act on what their type says."""
+    found = read_controllers(written(tmp_path, NAME, PID))
+    assert laws(found) == [("j1", 90, 0.4)]
+    left = " ".join(note for note in found.notes if note.startswith("left out"))
+    for part in (
+        "robot/states (joint_state",
+        'robot, wheel, pid: gains act on "effort',
+        "robot, rail, gains",
+    ):
+        assert part in left
+    both = read_controllers(written(tmp_path, NAME, TRAJECTORY + CARTESIAN + COMPLIANCE))
+    assert (len(both.joints), len(both.cartesian)) == (2, 1)
+    assert sum("left out" in note for note in both.notes) == 2
+    again = passive_gains(found, device(), rate=1000)
+    assert "ros__parameters" not in again.to_yaml()
+    own = yaml.safe_load(again.to_yaml())["robot"]["shoulder"]["pid"]
+    assert own == {"p": 90, "i": 0, "d": 0.4}
+
+
+def test_dampers_of_ratios_and_of_crisp(tmp_path):
+    """ζ √k and at most what the drive takes; D of CRISP as it stands, and 2 √K where none does."""
+    ratios = read_controllers(written(tmp_path, NAME, RATIOS))
+    assert laws(ratios) == [("j1", 80, 0.25 * sqrt(80)), ("j2", 500, 5)]
+    with pytest.raises(zw.InputError, match="damping_ratio tie"):
+        passive_gains(ratios, device(), rate=1000)
+    (one,) = read_controllers(written(tmp_path, NAME, TASK)).cartesian
+    assert one.stiffness == (400, 300, 200, 30, 20, 10)
+    assert one.damping == pytest.approx((40, 7, *(2 * sqrt(k) for k in (200, 30, 20, 10))))
+    assert one.nullspace == 2
+    with pytest.raises(zw.InputError, match="typed as k_pos_x"):
+        borne_impedance(one, read_arm(panda_like(tmp_path / "panda.urdf"), pose=True, whole=True), rate=1000)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("a: {type: x/Y}", "no gains of a controller"),
+        ("gazebo_ros_control: {pid_gains: {j: {p: 1}}}", "Gazebo simulates"),
+        ("a: {ros__parameters: {admittance: {mass_x: 1}, task: {k_pos_x: 1}}}", "of an admittance"),
+        (TASK.replace("task", "use_operational_space: true\n    task"), "multiplied by the arm's mass"),
+        (TASK.replace("k_rot_y", "k_rot"), "k_rot_y is missing"),
+        (TASK.replace("k_pos_y: 300", "k_pos_y: 0"), "a damper without a spring"),
+        ("joints: {a: {damping_ratio: 1}}", "kp: give a number"),
         (COMPLIANCE, "stiffness: of an admittance"),
         (FORCE, "pd_gains: of an admittance"),
         (FORCE.replace("pd_", "pid_"), "pid_gains: of an admittance"),
@@ -131,8 +200,10 @@ def test_an_impedance_is_a_wall_at_the_end(tmp_path):
     ],
 )
 def test_what_is_no_spring_and_damper_is_refused(tmp_path, text, message):
+    path = written(tmp_path, NAME, text)
+    assert is_of_controllers(read_table(path))
     with pytest.raises(zw.InputError, match=message):
-        read_controllers(written(tmp_path, NAME, text))
+        read_controllers(path)
 
 
 def test_checks_on_the_command_line(tmp_path, capsys):

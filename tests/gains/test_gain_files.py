@@ -11,13 +11,15 @@ from typing import Any
 import gain_files
 import pytest
 from gain_files import DAMIAO, GRIPPER, PIPER, SERVOS, YAM, openarm, written
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from strategies import texts
 
 import zwidth as zw
 from zwidth.data.gains.plant import family, plants
 from zwidth.data.gains.read import FAMILIES
+
+CALIBRATION = '{"a": {"id": 1, "drive_mode": 0, "homing_offset": 7, "range_min": 900, "range_max": 3000}}'
 
 
 def law(side: Any) -> tuple[Fraction, Fraction, Fraction]:
@@ -182,6 +184,7 @@ def test_yaml_json_and_toml_are_the_same(tmp_path):
         ("LeaderArmParam: {Kp: [!!python/object/apply:os.getcwd []], Kd: [1]}\n", "Kp\\[0\\]"),
         ("a: " + "[" * 5000, "too deeply|not YAML"),
         (GRIPPER, "a gripper alone"),
+        (CALIBRATION, "a LeRobot calibration .* position_p_coefficient"),
         (openarm(Jn=[0.5] * 8), "disturbance observers"),  # whose Kp is no stiffness
     ],
 )
@@ -211,6 +214,15 @@ def test_options_and_files_of_other_arms_are_refused(tmp_path, others, options, 
         zw.read_gains(leader, *(tmp_path / name for name in others), **options)
 
 
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize(
+    ("text", "said"), [(CALIBRATION, "LeRobot calibration"), ("a: {b: 1}", "no gains of")]
+)
+def test_a_family_that_is_given_is_looked_for(tmp_path, family, text, said):
+    with pytest.raises(zw.InputError, match=said):
+        zw.read_gains(written(tmp_path, "a.yaml", text), family=family)
+
+
 def test_every_published_number_has_its_source():
     for name in FAMILIES:
         known = family(name)
@@ -223,7 +235,7 @@ def test_every_published_number_has_its_source():
 
 KEYS = [
     "LeaderArmParam", "Bilateral", "Kp", "Kd", "Fc", "k", "Fv", "kp", "kd", "motor_list", "piper", "type",
-    "friction_comp", "position_p_coefficient", "position_kp", "position_kd",
+    "homing_offset", "friction_comp", "position_p_coefficient", "position_kp", "position_kd",
 ]  # fmt: skip
 
 
@@ -234,12 +246,20 @@ MESSES = st.recursive(
 
 
 @settings(max_examples=60, deadline=None)
-@given(texts() | MESSES.map(json.dumps))
-def test_whatever_is_in_a_file_there_is_an_answer_or_a_message(tmp_path_factory, text):
+@given(texts() | MESSES.map(json.dumps), st.sampled_from([None, *FAMILIES]))
+@example(CALIBRATION, "lerobot-feetech")
+@example(CALIBRATION, "lerobot-damiao")
+@example("{}", "piper")
+def test_whatever_is_in_a_file_there_is_an_answer_or_a_message(tmp_path_factory, text, family):
+    """Of a family that is given, too."""
     folder: Path = tmp_path_factory.mktemp("gains")
     for name in ("a.yaml", "a.json", "a.toml"):
         try:
-            found = zw.read_gains(written(folder, name, text), supply_voltage=None)
+            found = zw.read_gains(
+                written(folder, name, text),
+                family=family,
+                supply_voltage=12 if family == "lerobot-feetech" else None,
+            )
         except zw.InputError:
             continue
         assert found.joints

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from hypothesis import example
 from strategies import seeds
 
 import zwidth as zw
@@ -266,6 +267,7 @@ def test_an_end_is_rounded_to_its_own_side(parameter: str, unit: str, proved: st
 
 
 @seeds(4)
+@example(seed=39887)  # which comes to delays that no proof has room for
 def test_both_ends_hold_as_they_are_printed(seed: int) -> None:
     """Given to `check`, the one is passive and the other active."""
     rng = random.Random(seed)

@@ -156,7 +156,7 @@ def test_mjcf_is_read_as_mujoco_reads_it(tmp_path):
     assert (arm.damping, arm.coulomb_friction) == ((0.3, 0.2, 0.3, 0.3), (0.02,) * 4)
     assert arm.joint_range[:2] == ((-0.5, 0.5), pytest.approx((-np.pi / 3, np.pi / 3)))
     assert "joint in is damped by more at speed" in arm.damping_source
-    with pytest.raises(zw.InputError, match="'out', line 14, slides without limits"):
+    with pytest.raises(zw.InputError, match="'out', line 14, slides without limits; write range="):
         read_arm(path, whole=True)
 
 
@@ -178,7 +178,10 @@ def test_mjcf_is_read_as_mujoco_reads_it(tmp_path):
         ('<joint name="a"/><joint name="a"/>', "name of another joint, 'a'"),
         ('<body quat="1 0 0 0" euler="1 2 3"/>', "has quat and euler"),
         ('</body></worldbody><equality><weld body1="b"/></equality><worldbody><body>', "<weld> couples"),
-        ("<joint/></body><body><joint/>", "damping=….*in <joint>"),
+        (
+            '<joint/></body><body><joint frictionloss="1" armature="2"/>',
+            "damping=….*in <joint> in the description; frictionloss is Coulomb.*; armature is inertia$",
+        ),
     ],
 )
 def test_what_mujoco_or_we_cannot_read_is_refused(inside, words, tmp_path):
@@ -323,7 +326,7 @@ def test_what_cannot_be_read_is_said_in_one_line(tmp_path, urdf, capfd):
         ("none.urdf", None, "no file"),
         ("arm.step", None, "described in"),
         ("broken.urdf", "<robot", "broken.urdf cannot be read: it is no XML"),
-        ("undamped.urdf", whole.replace("damping", "nothing"), "any damping"),
+        ("undamped.urdf", whole.replace("damping", "nothing"), "any damping.*<dynamics.*; friction is Coul"),
         ("lost.urdf", whole.replace(LINK.format("tip"), ""), r"^lost.urdf cannot be read: line \d+: .*\w$"),
         ("empty.xml", '<robot name="another format"/>', r"^empty.xml cannot be read: line \d+: .*\w$"),
     ):

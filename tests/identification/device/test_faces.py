@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 import tomllib
 from fractions import Fraction
 
@@ -14,10 +15,12 @@ from known_motion import COULOMB, DAMPING, MASS, NOISE, PERIOD, STEP, paddle
 from scipy import stats
 
 import zwidth as zw
+from zwidth.cli.data.identification_report import print_identified
+from zwidth.cli.data.results import Identification
 from zwidth.data.identification.device.curve import friction_bins, lower_bounds
 from zwidth.data.identification.device.estimate import Estimate
 from zwidth.data.identification.device.pulses import PIECES, pulse
-from zwidth.data.identification.device.table import advice, limits, percent, rows
+from zwidth.data.identification.device.table import advice, limits, percent, perhaps_zero, rows
 from zwidth.model.specification.read import load
 from zwidth.show.plots.identified import expected_scatter, identification_figure
 
@@ -342,3 +345,29 @@ def test_a_picture_is_saved_and_not_replaced_unasked(found, ending, tmp_path):
     path = path if ending == "png" else tmp_path / f"new.{ending}"
     found.plot(path, force=ending == "png")
     assert path.stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "words"),
+    [
+        ("estimates", "damping", "it is known only to"),
+        ("directions", "outward", "that out of the wall is known only to"),
+        ("slopes", "inward", "the slope of friction at 0.479 m/s into the wall is known only to -0.1"),
+    ],
+)
+def test_what_may_be_none_is_named_with_the_reason(found, part, name, words, capsys):
+    """The lowest end decides: of the damping, of one direction, of the slope at the largest speed."""
+    loose = Estimate(0.1, 0.0, 0.2, 10**6, "N s/m")
+    own = getattr(found, part)
+    changed = {**own, name: loose} if isinstance(own, dict) else own._replace(**{name: loose})
+    poor = dataclasses.replace(found, **{part: changed})
+    assert perhaps_zero(found, 0.99) == {}
+    why = perhaps_zero(poor, 0.99)
+    assert re.search(words, why["damping"])
+    assert any(why["damping"] in line for line in advice(poor, 0.99))
+    assert f"# damping may be 0: {why['damping']}." in poor.to_toml(confidence=0.99)
+    print_identified(Identification(log_of(), poor, 0.99, {}, None, None, None))
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "The data allow no spring wall at 99 % confidence: damping may be 0." in shown
+    assert f"damping may be 0 for a wall: {words.partition('.')[0]}" in shown
+    assert "may be 0" not in shown.partition("to know it better")[2]

@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 
 import zwidth as zw
 from zwidth.data.tissue import RecursiveSolid, fit_tissue, force_response
+from zwidth.data.tissue.experiment.history import Trial, history_of
 
 SOLID = zw.StandardLinearSolid(420, 230, 17)
 TRUE = {"stiffness": 420, "branch_stiffness": 230, "branch_damping": 17}
@@ -152,3 +153,46 @@ def test_a_tracker_passes_over_what_says_nothing():
     assert not settings.track(x, f, t).findings
     assert kinds(settings.track(x, 1e3 * f)) == {"units"}
     assert kinds(settings.track(-x, f)) == {"outside"}
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_force_that_falls_while_the_probe_goes_on_is_of_no_tissue(seed):
+    """Of solids and of Hunt–Crossley contacts, at speeds that change by two, it never does."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0, 20, 600)
+    speed = np.interp(t, np.linspace(0, 20, 9), rng.uniform(1, 2, 9)) * (t > rng.uniform(0, 2))
+    x = 1e-4 * np.cumsum(speed) * t[1]
+    if seed % 3:
+        f = force_response(zw.StandardLinearSolid(*(10 ** rng.uniform([0, 2, 2], [3, 4, 5]))), t, x)
+    else:
+        f = 1e5 * x**1.5 * (1 + 50 * np.gradient(x, t))
+    f += rng.normal(0, 0.003 * f.max(), t.size)
+    late = rng.integers(250, 500)
+    torn = np.where(np.arange(t.size) < late, f, 0.05 * f)
+    history_of(Trial(t, x, f, ()), "loading", "a.csv")
+    with pytest.raises(zw.InputError, match=r"tears, yields or slips.* give the rows before"):
+        history_of(Trial(t, x, torn, ()), "loading", "a.csv")
+
+
+def test_a_table_without_time_is_told_what_is_missing(tmp_path):
+    path = tmp_path / "press.csv"
+    path.write_text("Depth (mm),Load (N)\n0,0\n1,0.2\n2,0.5\n", encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r'load against depth, "Depth .mm.", "Load .N.", without time'):
+        zw.tissue.read_test(path)
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_a_unit_that_is_stated_is_not_doubted(stated, tmp_path):
+    """Of an indentation of 16 µm in a file; of arrays of so little it is."""
+    t = np.linspace(0, 30, 200)
+    x = 5e-7 * t
+    f = force_response(zw.StandardLinearSolid(60, 40, 400), t, x)
+    f += np.random.default_rng(1).normal(0, 1e-7, t.size)
+    if stated:
+        rows = "".join(f"{a:.6f},{b * 1e6:.6f},{c * 1e6:.6f}\n" for a, b, c in zip(t, x, f, strict=True))
+        (tmp_path / "nano.csv").write_text(f"Time (s),Depth (um),Load (uN)\n{rows}", encoding="utf-8")
+        found = zw.tissue.read_test(tmp_path / "nano.csv", models=("standard-linear-solid",))
+    else:
+        found = zw.tissue.fit_test(t, x, f, models=("standard-linear-solid",))
+    assert any("their unit is another" in doubt for doubt in found.doubts) != stated
+    assert found.best["stiffness"] == pytest.approx(60, rel=0.05)

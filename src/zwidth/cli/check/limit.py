@@ -9,8 +9,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import asked
-from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output
+from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output, overrides
 from zwidth.cli.output import give_out, print_message, targets
+from zwidth.cli.parsing import dest_of
 from zwidth.errors import InputError
 from zwidth.model.device.catalogue import PROPERTIES
 from zwidth.model.specification.environments import option_keys
@@ -56,6 +57,8 @@ OPTIONS = (
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if _has_no_wall(arguments):
+        setattr(arguments, dest_of("stiffness"), "0")  # what is sought: the search begins at 2b/T
     loop = asked(arguments).loop
     if arguments.parameter is None:
         _refuse_without_stiffness(loop)
@@ -72,6 +75,16 @@ def run(arguments: argparse.Namespace) -> int:
 
     give_out(bracket, save, plot, arguments.json, report, partial(_json, bracket))
     return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
+
+
+def _has_no_wall(arguments: argparse.Namespace) -> bool:
+    """True where the stiffness of a wall is sought, and neither file nor command line has an environment."""
+    from zwidth.model.specification.read import WITH_LAWS, read_tables
+
+    typed = overrides(arguments)
+    sought = named(arguments.parameter or "stiffness") == "environment.stiffness"
+    is_wall = "stiffness" not in typed and typed.get("type", "wall") == "wall"
+    return sought and is_wall and "environment" not in read_tables(arguments.sources, WITH_LAWS)
 
 
 def _announce(seconds: float) -> None:

@@ -90,9 +90,12 @@ def _claim(bracket: Bracket) -> str:
 
 
 def _loop(bracket: Bracket, loop: Specification) -> list[Row]:
+    law, proved = loop.environment, bracket.proved_passive
+    if getattr(law.met, "stiffness", None) == 0 and bracket.parameter == "environment.stiffness" and proved:
+        law = law.around(law.met.replace(stiffness=proved))  # that of a wall of which none was given
     return [
         ("device", device_line(loop.device)),
-        ("environment", environment_line(loop.environment, loop.device.motion)),
+        ("environment", environment_line(law, loop.device.motion)),
         ("hand", bracket.hand),
         ("decided", f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"),
         *_cut(bracket),
@@ -100,10 +103,11 @@ def _loop(bracket: Bracket, loop: Specification) -> list[Row]:
 
 
 def _cut(bracket: Bracket) -> list[Row]:
-    """That the time ended the search, where it did."""
-    if not bracket.cut_by_time:
-        return []
-    return [("cut", "the time given was over first: a faster machine, or more, may come closer")]
+    """That the time ended the search, or the room of the proof, where it did."""
+    rows: list[Row] = [("beyond", bracket.beyond)] if bracket.beyond else []
+    if bracket.cut_by_time:
+        rows.append(("cut", "the time given was over first: a faster machine, or more, may come closer"))
+    return rows
 
 
 def _values(bracket: Bracket) -> Table:

@@ -12,7 +12,14 @@ from zwidth.cli.data.results import Identification
 from zwidth.cli.loop_lines import environment_line
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section
 from zwidth.data.identification.device.estimate import MOST_CONFIDENCE
-from zwidth.data.identification.device.table import BOTH_SIDES, advice, percent, rows, source_name
+from zwidth.data.identification.device.table import (
+    BOTH_SIDES,
+    advice,
+    percent,
+    perhaps_zero,
+    rows,
+    source_name,
+)
 from zwidth.model.environment import Wall
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.scope import TOLD
@@ -33,7 +40,7 @@ _FEW = 2
 def print_identified(found: Identification, in_full: bool = False) -> None:
     """Print the report on standard output."""
     own = found.identified.findings[len(found.log.findings) :]
-    better = advice(found.identified, found.confidence)
+    better = [line for line in advice(found.identified, found.confidence) if "may be 0" not in line]
     with page() as out:
         out.print(_headline(found))
         if not in_full:
@@ -67,7 +74,8 @@ def _claim(found: Identification) -> str:
     stiffest = check_by_closed_forms(device, Wall(stiffness=1)).max_stiffness
     confidence = f"at {percent(found.confidence)} confidence"
     if not stiffest:
-        return f"The data allow no spring wall {confidence}: damping or Coulomb friction may be 0."
+        names = " and ".join(perhaps_zero(found.identified, found.confidence)) or "a line below friction"
+        return f"The data allow no spring wall {confidence}: {names} may be 0."
     turn = found.identified.motion == "rotary"
     seen, unit = shown(found.identified.speed, "rad/s" if turn else "m/s", 3), "N*m/rad" if turn else "N/m"
     return (
@@ -109,8 +117,10 @@ def _numbers(found: Identification) -> Iterator[Table | Text]:
             row.unit,
         )
     yield table
-    yield Text(BOTH_SIDES, style="dim")
     one = found.identified
+    why = perhaps_zero(one, found.confidence) | perhaps_zero(one, _SHOWN)
+    zero = "".join(f"{name} may be 0 for a wall: {text}\n" for name, text in why.items())
+    yield Text.assemble((zero, "yellow"), (BOTH_SIDES, "dim"))
     force = "N*m" if one.motion == "rotary" else "N"
     yield Text(
         f"r² = {one.explained:.4f}, noise {shown(one.force_noise, force, 3)} per sample, "

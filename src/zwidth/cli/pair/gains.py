@@ -57,6 +57,9 @@ OPTIONS = (
 )
 
 
+_OF_TWO = "joint plot drive_rate bilateral_kp supply_voltage link_delay_back both ideal_drive no_compensation"
+
+
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
     from zwidth.data.gains import check_gains, read_gains
@@ -113,12 +116,8 @@ def _held(arguments: argparse.Namespace) -> int:
     """The joints of one arm, each held at a target by the spring of its controller."""
     from zwidth.data.gains import check_controllers, passive_gains, read_controllers
 
-    for option in ("joint", "plot", "drive_rate", "bilateral_kp", "supply_voltage", "link_delay_back"):
-        if getattr(arguments, option) is not None:
-            name = option.replace("_", "-")
-            raise InputError(f"--{name} is of two arms; these are the gains of one arm: leave it out")
-    for option in ("both", "ideal_drive", "no_compensation"):
-        if getattr(arguments, option):
+    for option in _OF_TWO.split():
+        if getattr(arguments, option) not in (None, False):
             name = option.replace("_", "-")
             raise InputError(f"--{name} is of two arms; these are the gains of one arm: leave it out")
     save = _target(arguments)
@@ -133,8 +132,7 @@ def _held(arguments: argparse.Namespace) -> int:
     if arguments.plant is None:
         raise InputError(
             "no gain file gives the damping of the joints, and it decides: give --plant with a TOML file "
-            "that "
-            "has [arm] damping = … and coulomb_friction = …"
+            "that has [arm] damping = … and coulomb_friction = …"
         )
     asked = (controllers, arguments.plant, arguments.rate, arguments.link_delay)
     found = check_controllers(*asked)

@@ -81,11 +81,13 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
             heads = [["", "K", "D"], ["", "N/m, N·m/rad", "N·s/m, N·m·s/rad"]]
             section(out, one.source, [_set(Table(rows=rows, heads=heads, lefts=1))])
             section(out, "of it", items(one.notes(3), "dim"))
+        if controllers.notes:
+            section(out, "of the file", items(controllers.notes, "dim"))
         one = controllers.cartesian[0]
         rate = one.rate or controllers.rate
         often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
         ask = f"zwidth workspace ARM.urdf --pose --wall {path}{often}"
-        lines = [f"{ask} --postures 20000 -o passive.yaml"]
+        lines = [f"{ask} --postures 20000{'' if one.of_task else ' -o passive.yaml'}"]
         if one.nullspace:
             lines.append(f'{ask} --null-stiffness wall --within "2 deg"')
         section(out, "next", [Text(line) for line in lines])

@@ -1,19 +1,25 @@
-"""Parameter files of ros2_control: springs of joints, and Cartesian impedance, of one arm held at a target.
+"""Parameter files of ROS: springs of joints, and Cartesian impedance, of one arm held at a target.
 
-    joint      τ = p e + i ∫e dt + d ė,   e = q_d − q      joint_trajectory_controller, pid_controller: gains
+    joint      τ = p e + i ∫e dt + d ė,   e = q_d − q      joint_trajectory_controller, pid_controller: gains;
+                                                            ROS 1, effort_controllers: pid
                τ = k (q_d − q) − d q̇                        franka_ros2, example controllers: k_gains, d_gains
+               τ = k (q_d − q) − ζ √k q̇                     TRLC-DK1: joints with kp, damping_ratio
     Cartesian  f = K (x_d − x) − D ẋ,  D = 2 ζ √K           Cartesian-Impedance-Controller: stiffness, damping
+                                       D or 2 √K            CRISP: task with k_pos_x … k_rot_z, d_pos_x …
 
 To a hand that moves the arm while the target rests, each is a virtual wall on both sides of it.  Sources:
-ros-controls/ros2_controllers, joint_trajectory_controller_parameters.yaml; frankarobotics/franka_ros2,
-franka_bringup/config/controllers.yaml; matthias-mayr/Cartesian-Impedance-Controller, its parameters.yaml and
-cartesian_impedance_controller.cpp (dampingRule); fzi-forschungszentrum-informatik/cartesian_controllers.
+ros-controls/ros2_controllers, joint_trajectory_controller_parameters.yaml; ros-controls/ros_controllers,
+effort_controllers; frankarobotics/franka_ros2, franka_bringup/config/controllers.yaml;
+matthias-mayr/Cartesian-Impedance-Controller, its parameters.yaml and cartesian_impedance_controller.cpp
+(dampingRule); utiasDSL/crisp_controllers, cartesian_controller.yaml and .cpp (setStiffnessAndDamping);
+robot-learning-co/trlc-dk1, the impedance follower (JointImpedanceParams);
+fzi-forschungszentrum-informatik/cartesian_controllers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import sqrt
 from pathlib import Path
@@ -28,24 +34,42 @@ from zwidth.model.specification.table import quoted
 from zwidth.quantity.text import shown
 
 _AXES = ("x", "y", "z")
+_MANAGER = ("controller_manager", "ros__parameters")
 _MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in _AXES)
 _OF_ADMITTANCE = ("stiffness", "pd_gains", "pid_gains")
 """Tables with keys for such motions are of FZI's cartesian_controllers: positions are commanded, no force."""
 
+_OF_TASK = {"N/m": [f"pos_{axis}" for axis in _AXES], "N*m/rad": [f"rot_{axis}" for axis in _AXES]}
+"""Of CRISP, what it calls motions, by the unit of their springs."""
+
+_MOST_KP, _MOST_KD = Fraction(500), Fraction(5)
+"""What the drives of a TRLC-DK1 take [N·m/rad, N·m·s/rad]; more is cut off there."""
+
 _JOINT_NOTES = (
     "the target rests: each joint is a spring and a damper to the ground, on both sides",
     "the speed of the d gain is taken as the difference of two readings; what the hardware reports is "
-    "filtered "
-    "in a way of its own",
+    "filtered in a way of its own",
 )
+_OF_RATIOS = (
+    "d is damping_ratio √kp of the numbers, at most 5 N·m·s/rad, and kp at most 500 N·m/rad, as in the code "
+    "of TRLC-DK1; both act in the motor drives: the rate is of their loop"
+)
+_READ = (
+    "gains or pid with p, i, d of each joint, k_gains with d_gains, joints with kp and damping_ratio; at the "
+    "end stiffness with translation and rotation, task with k_pos_x … k_rot_z"
+)
+
+
+class _OtherLaw(InputError):
+    """Of gains of a law that is none of a spring and a damper."""
 
 
 @dataclass(frozen=True)
 class JointLaw:
     """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand.
 
-    `keys` leads to the table of its controller; `by_joint` is True of gains below the joint's name, False of
-    a list for all joints.
+    `keys` leads to the table of its controller, and `form` is how it has them: "gains" or "joints" below the
+    joint's name, "k_gains" in a list for all joints, "pid" of its one joint.
     """
 
     name: str
@@ -54,7 +78,7 @@ class JointLaw:
     damping: Fraction
     source: str
     keys: tuple[str, ...] = ()
-    by_joint: bool = True
+    form: str = "gains"
 
 
 @dataclass(frozen=True)
@@ -77,6 +101,8 @@ class CartesianGains:
         ζ of each.
     keys
         That lead to the table of the controller.
+    of_task
+        True of CRISP, which has a key for each axis.
     """
 
     stiffness: tuple[float, ...]
@@ -87,6 +113,7 @@ class CartesianGains:
     source: str
     factors: tuple[float, ...] = (1.0,) * 6
     keys: tuple[str, ...] = ()
+    of_task: bool = False
 
     def wall(self, turns: int) -> MatrixWall:
         """As a wall for a hand at a point, 0 turns, or in pose, 3."""
@@ -106,6 +133,12 @@ class CartesianGains:
             yield (
                 "how it makes speeds: a difference of two readings is taken; a robot that filters them is "
                 "another loop"
+            )
+        if self.of_task:
+            yield (
+                "CRISP's filters of positions, speeds and torques, by default half of each new value, its "
+                "clip of errors and its springs at the ends of joints: a lag is more --delay; weights in the "
+                "null space are taken as 1"
             )
         if self.nullspace and not with_null_space:
             yield (
@@ -136,7 +169,7 @@ class Controllers:
     cartesian: tuple[CartesianGains, ...]
     rate: Fraction | None
     notes: tuple[str, ...]
-    manager: tuple[str, ...] = ("controller_manager", "ros__parameters")
+    manager: tuple[str, ...] = _MANAGER
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -166,11 +199,12 @@ class Controllers:
                 for one in self.cartesian
             ],
             "rate_Hz": None if self.rate is None else float(self.rate),
+            "notes": list(self.notes),
         }
 
 
 def read_controllers(path: str | Path) -> Controllers:
-    """Read a parameter file of ros2_control, YAML.
+    """Read a parameter file of ROS, YAML; what is no spring and damper is left out, and said in the notes.
 
     Raises
     ------
@@ -178,87 +212,175 @@ def read_controllers(path: str | Path) -> Controllers:
         If it cannot be read, has no gains that are known, or a law that is none of a spring and a damper.
     """
     table = read_table(path)
-    found = [inner for inner in table.below() if _fits(inner)]
-    if not found:
+    joints, cartesian = list[JointLaw](), list[CartesianGains]()
+    seen, others = list[tuple[str, ...]](), list[str]()
+    for inner in table.below():
+        if _fits(inner):
+            try:
+                joints += _joints(inner)
+                cartesian += _cartesian(inner)
+            except _OtherLaw as error:
+                others.append(str(error))
+            seen.append(inner.keys)
+    if not joints and not cartesian:
         raise InputError(
-            f"{table.label}: no gains of a controller; read are gains with p, i, d for each joint, "
-            "k_gains with "
-            "d_gains, and stiffness with translation and rotation, below ros__parameters"
+            others[0]
+            if others
+            else f"{table.label}: no gains of a controller that are known; read are {_READ}. Write others in "
+            "one of these forms, {arm: {ros__parameters: {gains: {JOINT: {p: …, d: …}}}}}, or ask zwidth "
+            "workspace ARM.urdf --pose --stiffness … --rotational-stiffness …"
         )
-    joints = tuple(joint for inner in found for joint in _joints(inner))
-    cartesian = tuple(_cartesian(inner) for inner in found if _is_cartesian(inner))
-    manager = _manager(table)
-    notes = _JOINT_NOTES if joints else ()
-    if manager is None:
-        return Controllers(joints, cartesian, None, notes)
-    return Controllers(joints, cartesian, manager.number("update_rate", "Hz"), notes, manager.keys)
+    notes = list(_JOINT_NOTES) if joints else []
+    if any(joint.form == "joints" for joint in joints):
+        notes.append(_OF_RATIOS)
+    if joints and cartesian:
+        others += [
+            f"{one.source}: zwidth workspace ARM.urdf --pose --wall FILE decides it" for one in cartesian
+        ]
+    for name, keys in _controllers(table):
+        if not any(own[: len(keys)] == keys for own in seen):
+            others.append(f"{name}: it has no gains that are read")
+    notes += [f"left out: {text}" for text in others]
+    found = Controllers(tuple(joints), tuple(cartesian), None, tuple(notes))
+    for inner in table.below():
+        if inner.keys[-2:] == _MANAGER and "update_rate" in inner:
+            return replace(found, rate=inner.number("update_rate", "Hz"), manager=inner.keys)
+    return found
 
 
 def is_of_controllers(table: GainTable) -> bool:
-    """True for a file with gains of ros2_control."""
-    return any(_fits(inner) for inner in table.below())
+    """True for a parameter file of ROS, or with gains of one of its controllers."""
+    return next(_controllers(table), None) is not None or any(_fits(inner) for inner in table.below())
+
+
+def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """By what they are called, controllers of ROS 2, and of ROS 1, where a `type` says what each is."""
+    for inner in table.below():
+        kind = inner.values.get("type")
+        if inner.keys[-1:] == ("controller_manager",) or "ros__parameters" in inner.keys:
+            continue
+        if "ros__parameters" in inner:
+            yield "/".join(inner.keys), inner.keys
+        elif isinstance(kind, str) and "/" in kind:
+            yield f"{'/'.join(inner.keys)} ({kind})", inner.keys
+
+
+def _inner(table: GainTable, key: str) -> Mapping[str, Any]:
+    """What stands below a key; nothing where no keys do."""
+    inner = table.values.get(key)
+    return inner if isinstance(inner, Mapping) else {}
 
 
 def _fits(table: GainTable) -> bool:
-    return "k_gains" in table or _is_pid(table) or _is_cartesian(table) or _admittance(table) is not None
+    return (
+        bool("k_gains" in table or _inner(table, "pid") or _inner(table, "pid_gains"))
+        or _rows(table, "gains", "p")
+        or _rows(table, "joints", "damping_ratio")
+        or _is_cartesian(table)
+        or _admittance(table) is not None
+    )
 
 
-def _is_pid(table: GainTable) -> bool:
-    gains = table.values.get("gains")
-    return isinstance(gains, dict) and any(isinstance(row, dict) and "p" in row for row in gains.values())
+def _rows(table: GainTable, key: str, inside: str) -> bool:
+    """True where a table has a key in it for each joint, with `inside` in that."""
+    return any(isinstance(row, Mapping) and inside in row for row in _inner(table, key).values())
 
 
 def _is_cartesian(table: GainTable) -> bool:
-    inner = table.values.get("stiffness")
-    return isinstance(inner, dict) and "translation" in inner
+    task = any(str(key).startswith(("k_pos_", "k_rot_")) for key in _inner(table, "task"))
+    return task or "translation" in _inner(table, "stiffness")
 
 
 def _admittance(table: GainTable) -> str | None:
     """The key by which an admittance is known."""
-    for key in _OF_ADMITTANCE:
-        inner = table.values.get(key)
-        if isinstance(inner, dict) and any(motion in inner for motion in _MOTIONS):
-            return key
-    return None
+    found = (key for key in _OF_ADMITTANCE if not _inner(table, key).keys().isdisjoint(_MOTIONS))
+    return next(found, "admittance" if _inner(table, "admittance") else None)
 
 
 def _joints(table: GainTable) -> Iterator[JointLaw]:
     if (key := _admittance(table)) is not None:
-        raise InputError(
+        raise _OtherLaw(
             f"{table.where(key)}: of an admittance, as in FZI's cartesian_controllers: it commands "
             "positions from a force that is measured, and no wall of a spring and a damper is that "
             "controller; read are impedance controllers; of admittances the documentation has a page"
+        )
+    if "pid_gains" in table:
+        raise _OtherLaw(
+            f"{table.where('pid_gains')}: of a servo that Gazebo simulates (gazebo_ros_control); no machine "
+            "runs it"
         )
     if "k_gains" in table:
         stiffness = table.numbers("k_gains", "N*m/rad")
         damping = table.numbers("d_gains", "N*m*s/rad", len(stiffness))
         for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
             where = table.where(f"k_gains[{n}]")
-            yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, where, table.keys, by_joint=False)
-    if _is_pid(table):
-        yield from _pids(table)
+            yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, where, table.keys, "k_gains")
+    if _inner(table, "pid"):
+        _commands_efforts(table, "pid")
+        name = table.values.get("joint", table.keys[-1] if table.keys else "joint")
+        yield _pid(str(name), table.table("pid"), table, "pid")
+    if _rows(table, "gains", "p"):
+        _commands_efforts(table, "gains")
+        gains = table.table("gains")
+        yield from (_pid(name, gains.table(name), table, "gains") for name in gains.values)
+    if _rows(table, "joints", "damping_ratio"):
+        joints = table.table("joints")
+        yield from (_of_ratio(name, joints.table(name), table) for name in joints.values)
 
 
-def _pids(table: GainTable) -> Iterator[JointLaw]:
-    interfaces = table.values.get("command_interfaces")
-    if isinstance(interfaces, list) and "effort" not in interfaces:
-        raise InputError(
-            f"{table.where('command_interfaces')}: gains act on "
-            f"{quoted(', '.join(map(str, interfaces)))}; they are "
-            "a spring and a damper where the command is an effort"
+def _commands_efforts(table: GainTable, key: str) -> None:
+    """Elsewhere gains make a speed or a position of an error, or an effort of the error of a speed."""
+    interfaces, kind = table.values.get("command_interfaces"), str(table.values.get("type", "effort"))
+    commands = ", ".join(map(str, interfaces)) if isinstance(interfaces, list) else kind
+    if "effort" not in commands or kind.endswith("VelocityController"):
+        where = table.where("command_interfaces" if isinstance(interfaces, list) else key)
+        raise _OtherLaw(
+            f"{where}: gains act on {quoted(commands)}; they are a spring and a damper where the command is "
+            "an effort made of positions"
         )
-    gains = table.table("gains")
-    for name in gains.values:
-        row = gains.table(name)
-
-        def number(key: str, unit: str, row: GainTable = row) -> Fraction:
-            return row.number(key, unit) if key in row else Fraction(0)
-
-        p, i, d = number("p", "N*m/rad"), number("i", "1"), number("d", "N*m*s/rad")
-        yield JointLaw(str(name), p, i, d, row.where("p"), table.keys)
 
 
-def _cartesian(table: GainTable) -> CartesianGains:
+def _pid(name: str, row: GainTable, table: GainTable, form: str) -> JointLaw:
+    p, i, d = (
+        row.number(key, unit) if key in row else Fraction(0)
+        for key, unit in (("p", "N*m/rad"), ("i", "1"), ("d", "N*m*s/rad"))
+    )
+    return JointLaw(name, p, i, d, row.where("p"), table.keys, form)
+
+
+def _of_ratio(name: str, row: GainTable, table: GainTable) -> JointLaw:
+    for key in ("kp", "damping_ratio"):
+        if key not in row or row.number(key, "1") < 0:
+            raise InputError(f"{row.where(key)}: give a number ≥ 0; TRLC-DK1 has defaults in its own code")
+    kp, ratio = row.number("kp", "N*m/rad"), row.number("damping_ratio", "1")
+    d = min(Fraction(float(ratio) * sqrt(kp)), _MOST_KD)
+    return JointLaw(name, min(kp, _MOST_KP), Fraction(0), d, row.where("kp"), table.keys, "joints")
+
+
+def _cartesian(table: GainTable) -> Iterator[CartesianGains]:
+    if not _is_cartesian(table):
+        return
+    of_task = "task" in table
+    k, factors = (_of_task if of_task else _of_factors)(table)
+    if min(k) < 0 or min(factors) < 0:
+        raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
+    rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
+    *d, d_null = (2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
+    yield CartesianGains(
+        tuple(k[:6]),
+        tuple(d),
+        k[6],
+        d_null,
+        rate,
+        table.where("task" if of_task else "stiffness"),
+        tuple(factors[:6]),
+        table.keys,
+        of_task,
+    )
+
+
+def _of_factors(table: GainTable) -> tuple[list[float], list[float]]:
+    """K and ζ of the six motions and of the null space."""
     stiffness = table.table("stiffness")
     k = [
         *_three(stiffness, "translation", "N/m"),
@@ -273,21 +395,29 @@ def _cartesian(table: GainTable) -> CartesianGains:
             if part in damping:
                 factors[place : place + 3] = _three(damping, part, "1")
     null = stiffness.number("nullspace_stiffness", "N*m/rad") if "nullspace_stiffness" in stiffness else 0
-    k.append(float(null))
-    if min(k) < 0 or min(factors) < 0:
-        raise InputError(f"{table.label}: stiffness and damping factors must be ≥ 0: a spring pulls back")
-    rate = table.number("update_frequency", "Hz") if "update_frequency" in table else None
-    *d, d_null = (2 * factor * sqrt(value) for factor, value in zip(factors, k, strict=True))
-    return CartesianGains(
-        tuple(k[:6]),
-        tuple(d),
-        k[6],
-        d_null,
-        rate,
-        table.where("stiffness"),
-        tuple(factors[:6]),
-        table.keys,
-    )
+    return [*k, float(null)], factors
+
+
+def _of_task(table: GainTable) -> tuple[list[float], list[float]]:
+    """The same of CRISP, which takes 2 √K for a damping that is not > 0."""
+    if str(table.values.get("use_operational_space", "false")).lower() == "true":
+        raise _OtherLaw(
+            f"{table.where('use_operational_space')}: the spring is multiplied by the arm's mass; no wall is"
+        )
+    task = table.table("task")
+    null = table.table("nullspace") if "nullspace" in table else GainTable(f"{table.label}, nullspace", {})
+    keys = [(task, f"k_{name}", f"d_{name}", unit) for unit, names in _OF_TASK.items() for name in names]
+    k, factors = list[float](), list[float]()
+    for part, stiff, damped, unit in [*keys, (null, "stiffness", "damping", "N*m/rad")]:
+        if part is task and stiff not in part:
+            raise InputError(f"{part.where(stiff)} is missing; give k_pos_x … k_rot_z [N/m; N·m/rad]")
+        value = float(part.number(stiff, unit)) if stiff in part else 1.0
+        d = float(part.number(damped, "1")) if damped in part else -1.0
+        if d > 0 >= value:
+            raise _OtherLaw(f"{part.where(damped)}: a damper without a spring is not read")
+        k.append(value)
+        factors.append(d / (2 * sqrt(value)) if d > 0 else 1.0)
+    return k, factors
 
 
 def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
@@ -296,11 +426,3 @@ def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
     if missing:
         raise InputError(f"{inner.label}: {missing[0]} is missing; give x, y and z [{unit}]")
     return [float(inner.number(axis, unit)) for axis in _AXES]
-
-
-def _manager(table: GainTable) -> GainTable | None:
-    """The parameters of the controller manager, where its update_rate stands."""
-    for inner in table.below():
-        if inner.keys[-2:] == ("controller_manager", "ros__parameters") and "update_rate" in inner:
-            return inner
-    return None

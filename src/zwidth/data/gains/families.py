@@ -323,8 +323,6 @@ def read_openarm(tables: Sequence[GainTable]) -> ArmGains:
             "both arms are taken as computed once in a sample period, the follower too, which in the fork "
             "has a loop in its drive: with that it is another pair, which is not decided here",
         ]
-    if not found:
-        raise InputError(f"{tables[0].label}: neither {' nor '.join(_SIDES.values())} is there")
     for side, other in (("leader", "follower"), ("follower", "leader")):
         if side not in found:
             found[side] = found[other]

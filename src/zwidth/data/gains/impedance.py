@@ -103,7 +103,7 @@ class BorneImpedance:
             "over its joint ranges, and between them nothing is proved. Computed by zwidth, tried on no "
             "machine."
         )
-        yield "For ROS 2: to be loaded after your own parameter file; what is not here stays as it is there."
+        yield "For ROS: to be loaded after your own parameter file; what is not here stays as it is there."
         yield "What it supposes:"
         joints = ", ".join(f"{float(b) * float(self.share):.4g}" for b in np.diag(asked.damping(self.size)))
         yield f"- damping in the joints, {part} of what was given, or more [N*m*s/rad]: {joints}"
@@ -140,6 +140,11 @@ def borne_impedance(
         If a number is outside its bound, the arm is in the plane, or no stiffness is borne.
     """
     part, turns = share_of(share), arm.turns
+    if asked.of_task:
+        raise InputError(
+            f"{asked.source}: written are the keys of Cartesian-Impedance-Controller; without -o the report "
+            "has the part of K and D that all postures bear, to be typed as k_pos_x … and d_pos_x …"
+        )
     if turns not in (0, 3):
         raise InputError("an impedance of ros2_control has three rotations; a hand in the plane has one")
 

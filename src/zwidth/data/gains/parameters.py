@@ -42,16 +42,18 @@ def parameter_file(
     """The text of a file with these joints, each with remarks on its "p", "i" and "d", below comments.
 
     `rate` [Hz] is of the controller manager, below the keys `manager`; one that is no whole number is said in
-    the head alone.
+    the head alone, and so is that of ROS 1, whose robots have it in their code.
     """
     tree: Tree = {}
-    if rate.denominator == 1:
+    if rate.denominator == 1 and all(law.form != "pid" for law, _ in laws):
         place_of(tree, manager)["update_rate"] = f"{rate}  # Hz, for which the gains are proved"
     for keys in dict.fromkeys(law.keys for law, _ in laws):
         own = [(law, remarks) for law, remarks in laws if law.keys == keys]
         place = place_of(tree, keys)
-        by_joint = [pair for pair in own if pair[0].by_joint]
-        listed = [pair for pair in own if not pair[0].by_joint]
+        by_joint = [pair for pair in own if pair[0].form == "gains"]
+        listed = [pair for pair in own if pair[0].form == "k_gains"]
+        for law, remarks in (pair for pair in own if pair[0].form == "pid"):
+            place["pid"] = dict(_rows(law, remarks))
         if by_joint:
             place["gains"] = {law.name: dict(_rows(law, remarks)) for law, remarks in by_joint}
         if listed:

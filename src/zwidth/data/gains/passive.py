@@ -102,7 +102,7 @@ class PassiveGains:
             f"energy out, as long as it damps at least {float(100 * self.share):g} % of what was given. "
             "Computed by zwidth, tried on no machine."
         )
-        yield "For ROS 2: to be loaded after your own parameter file; what is not here stays as it is there."
+        yield "For ROS: to be loaded after your own parameter file; what is not here stays as it is there."
         yield "What the proofs assume:"
         damping = (f"{one.law.name} {float(one.verdict.device.exact('damping')):.4g}" for one in self.joints)
         yield f"- damping in the joints [N*m*s/rad]: {', '.join(damping)}"
@@ -136,6 +136,11 @@ def passive_gains(
     InputError
         If a number is outside its bound, or of a joint no gains are proved.
     """
+    if any(law.form == "joints" for law in controllers.joints):
+        raise InputError(
+            "kp and damping_ratio tie the damper to the spring: no gains are written of them; ask of p and d "
+            "in {arm: {ros__parameters: {gains: {JOINT: {p: …, d: …}}}}}"
+        )
     part = share_of(share)
     loops = loops_of(controllers, plant, rate, delay)
     joints = tuple(

@@ -74,6 +74,9 @@ class TissueFit(Documented):
     position: Array | None = answered(
         "as it was read [m; rad]; None where it is not known", default=None, only_shown=True
     )
+    units_stated: bool = answered(
+        "true where a file, or a person, says in which units it is", default=False, only_shown=True
+    )
     time: Array | None = answered(
         "of the samples that count [s]; None where it is not known, and then there is no picture",
         default=None,
@@ -195,7 +198,7 @@ class TissueFit(Documented):
         if self.model.name == "hunt-crossley" and self["exponent"] < 1:
             said.append("an exponent below 1 is no Hunt–Crossley contact: stiffest where it begins")
         if self.position is not None and self.model.linear:
-            if self.motion == "linear":
+            if self.motion == "linear" and not self.units_stated:
                 said.extend(unlikely_units(self._at_once, float(np.abs(self.position).max())))
             if self.response == "force":
                 said.extend(coarse(self.position, self._at_once, self.rms))

@@ -44,6 +44,11 @@ _TURNS = ("quat", "axisangle", "xyaxes", "zaxis", "euler")
 _TRUTH = ("auto", "true", "false")
 _LETTERS = "xyz"
 
+_COULOMB = "is Coulomb friction, which covers encoder steps and no spring"
+_NO_DAMPING_OF_MJCF = {"frictionloss": _COULOMB, "armature": "is inertia", "dampratio": "is a controller's"}
+_NO_DAMPING_OF_URDF = {"friction": _COULOMB}
+"""What a file may have in the place of damping, which a person would take for it."""
+
 Defaults = dict[str, dict[str, str]]
 """Of each kind of element, its attributes."""
 
@@ -66,9 +71,19 @@ def read_mjcf(root: Element, stem: str) -> Mechanism:
     for section in root.all("equality"):
         for equality in section.parts:
             reader.couple(equality)
-    return mechanism(
-        root.given.get("model") or stem, 'damping="…" in <joint>', reader.written, reader.frames, reader.notes
-    )
+    advice = _advice('damping="…" in <joint>', root, _NO_DAMPING_OF_MJCF)
+    return mechanism(root.given.get("model") or stem, advice, reader.written, reader.frames, reader.notes)
+
+
+def _advice(damping_is: str, root: Element, others: dict[str, str]) -> str:
+    """Where damping is written, and what of the file is none."""
+    waiting, keys = [root], set[str]()
+    while waiting:
+        element = waiting.pop()
+        keys |= element.given.keys()
+        waiting += element.parts
+    beside = [f"{key} {what}" for key, what in others.items() if key in keys]
+    return "; ".join([f"{damping_is} in the description", *beside])
 
 
 def _settings(root: Element) -> _Settings:
@@ -353,7 +368,8 @@ def read_urdf(root: Element, stem: str) -> Mechanism:
         lost = next(link for link in links if link not in {frame.name for frame in frames})
         raise links[lost].wrong("is in a ring of joints; a robot is a tree")
     named = root.given.get("name") or stem
-    return mechanism(named, '<dynamics damping="…"/> in <joint>', written, frames)
+    advice = _advice('<dynamics damping="…"/> in <joint>', root, _NO_DAMPING_OF_URDF)
+    return mechanism(named, advice, written, frames)
 
 
 def _by_name(root: Element, tag: str) -> dict[str, Element]:

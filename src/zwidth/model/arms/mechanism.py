@@ -111,7 +111,7 @@ class Mechanism:
     """A tree of joints; made by `mechanism`."""
 
     name: str
-    damping_is: str  # where the description's format says it
+    advice: str  # where the description's format has damping, and what of the file is none
     joints: tuple[Joint, ...]
     coordinates: tuple[Coordinate, ...]
     frames: tuple[Frame, ...]
@@ -127,7 +127,7 @@ class Mechanism:
 
 
 def mechanism(
-    name: str, damping_is: str, written: Sequence[Written], frames: Sequence[Frame], notes: Sequence[str] = ()
+    name: str, advice: str, written: Sequence[Written], frames: Sequence[Frame], notes: Sequence[str] = ()
 ) -> Mechanism:
     """The table, with each joint that follows another moved by that one's coordinate."""
     for joint in written:
@@ -146,7 +146,7 @@ def mechanism(
     )
     return Mechanism(
         name=name,
-        damping_is=damping_is,
+        advice=advice,
         joints=joints,
         coordinates=coordinates,
         frames=tuple(frames),

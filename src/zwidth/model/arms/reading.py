@@ -82,8 +82,7 @@ def read_arm(
     if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
-            f"measure it and give damping, on the command line --joint-damping, or write {model.damping_is} "
-            "in the description"
+            f"measure it and give damping, on the command line --joint-damping, or write {model.advice}"
         )
     limits = tuple(c.effort for c in each) if torque_limit is None else tuple(_for_each(torque_limit, m))
     given: dict[str, Any] = {
@@ -191,8 +190,9 @@ def _limits(joint: Coordinate) -> tuple[float, float]:
         return joint.limits
     if joint.slides:
         raise InputError(
-            f"joint {joint.name!r}, line {joint.line}, slides without limits; write them into the "
-            "description, or hold it"
+            f"joint {joint.name!r}, line {joint.line}, slides without limits; "
+            + ("give some within 1000 m" if np.isfinite(joint.limits).all() else 'write range="…" in <joint>')
+            + ", or hold it"
         )
     return (-float(np.pi), float(np.pi))
 

@@ -60,6 +60,10 @@ class Bracket(Result):
         "what of the linear criterion is violated at `proved_active`, where closed conditions found it",
         default=None,
     )
+    beyond: str = known(
+        "where a side is open because no proof has room for a value further on: that value, and why",
+        default="",
+    )
     cut_by_time: bool = answered(
         "true where a time that was given ended the search, and another machine may find a closer one; not "
         "there otherwise",
@@ -103,10 +107,11 @@ class Bracket(Result):
             return f"{name}: nothing was decided {given}"
         ends = self.outward((self.proved_passive, self.proved_active))
         passive, active = (in_unit(value, self.unit) for value in ends)
+        beyond = f"; {self.beyond}" if self.beyond else ""
         if self.proved_active is None:
-            return f"{name}: {passive} is proved passive, and nothing is refuted"
+            return f"{name}: {passive} is proved passive, and nothing is refuted{beyond}"
         if self.proved_passive is None:
-            return f"{name}: no value is proved passive; {active} is active"
+            return f"{name}: no value is proved passive; {active} is active{beyond}"
         return f"{name}: {passive} is proved passive, {active} is active, for {self.hand}"
 
     def to_dict(self) -> dict[str, Any]:

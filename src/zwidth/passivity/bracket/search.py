@@ -21,6 +21,7 @@ from zwidth.passivity.storage.value_iteration import Effort
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import shown
 
 Holds = Callable[[Exact, float], bool]
 """Whether a claim is shown at a value with no more work than that."""
@@ -62,6 +63,8 @@ class Search:
         self.effort, self.most, self.progress = effort, most, progress
         self.start = time.monotonic()
         self.evaluations = 0
+        self.refused: dict[Exact, str] = {}
+        """Why nothing decides a value."""
         self.first = Exact(parameter.now or 1.0)
 
     def by_closed_forms(self, every_law: bool = False) -> Found | None:
@@ -76,16 +79,21 @@ class Search:
                 self.count()
                 device, law = self.parameter.change(value)
                 closed = every_law or is_stepped(law)
-                verdicts[value] = (
-                    check(device, law, iterate=False) if closed else check_by_closed_forms(device, law)
-                )
+                try:
+                    verdicts[value] = (
+                        check(device, law, iterate=False) if closed else check_by_closed_forms(device, law)
+                    )
+                except InputError as error:  # a delay of more samples than a proof has room for
+                    if value == self.first:
+                        raise
+                    self.refused[value], verdicts[value] = str(error), None
             return verdicts[value]
 
         def proved(value: Exact, _: float) -> bool:
-            return bool(verdict(value).outcome == "passive")
+            return getattr(verdict(value), "outcome", "") == "passive"
 
         def refuted(value: Exact, _: float) -> bool:
-            return bool(verdict(value).outcome == "active")
+            return getattr(verdict(value), "outcome", "") == "active"
 
         try:
             verdict(self.first)
@@ -100,6 +108,14 @@ class Search:
         proof = None if good is None else good.certificate
         motion, violation = (None, None) if bad is None else (bad.witness, bad.violation)
         return Found(passive, active, proof, motion, known.scope, violation)
+
+    @property
+    def beyond(self) -> str:
+        """Why no value further on was decided."""
+        if not self.refused:
+            return ""
+        value = min(self.refused, key=lambda each: abs(log2(each / self.first)))
+        return f"the search ended at {shown(float(value), self.parameter.unit, 6)}: {self.refused[value]}"
 
     def bracket(
         self,
@@ -123,6 +139,7 @@ class Search:
             storage,
             bounds,
             found.violation,
+            self.beyond if None in (found.passive, found.active) else "",
             self.effort.is_cut,
         )
 

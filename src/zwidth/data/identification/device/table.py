@@ -220,6 +220,8 @@ def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]
     story += [
         f"{finding}" for finding in identified.findings if finding.kind in ("wrong model", "bent friction")
     ]
+    if confidence is not None:
+        story += [f"{name} may be 0: {why}." for name, why in perhaps_zero(identified, confidence).items()]
     if confidence is None:
         return [*story, "Best guesses: what is proved of them is not proved of the device."]
     return [
@@ -312,17 +314,46 @@ def limits(identified: IdentifiedNumbers) -> tuple[Limit, ...]:
     return tuple(found)
 
 
+def perhaps_zero(identified: IdentifiedNumbers, confidence: float) -> dict[str, str]:
+    """Which of damping and Coulomb friction may be 0 for a wall at this confidence, and why, in words."""
+    return {
+        NAMES[limit.parameter]: _why_zero(identified, limit, confidence)
+        for limit in limits(identified)
+        if limit.least(confidence) <= 0
+    }
+
+
+def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) -> str:
+    """By the lowest of what a wall rests on: the number itself, one direction, the slope at the end."""
+    at = f"at {told_quantity(identified.speed, 'friction_speed', identified.motion, 3)}"
+    ways = {"into the wall": "inward", "out of the wall": "outward"}
+    known = [("it", limit.estimate, "a longer log")]
+    for way, name in ways.items() if limit.parameter == "damping" else ():
+        known.append((f"that {way}", getattr(identified.directions, name), f"more strokes {way}"))
+        slope = getattr(identified.slopes, name)
+        known.append((f"the slope of friction {at} {way}", slope, f"more strokes {way} {at}"))
+    what, estimate, more = min(known, key=lambda each: each[1].interval(confidence)[0])
+    low, high = estimate.interval(confidence)
+    if low > 0:
+        return "lower bounds of friction by speed leave none above the damping; slower strokes would tell"
+    factor, unit = spoken(estimate.unit.replace(" ", "*"))
+    ends_ = f"{factor * low:.2g} … {factor * high:.2g} {unit_text(unit)}"
+    return f"{what} is known only to {ends_}, {percent(confidence)}; {more} would tell"
+
+
 def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     """Which number limits the stiffest wall, and how to know it better."""
     if identified.shows("wrong model"):
         return ("fit Coulomb friction too: these numbers are of another model than the device",)
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])
-    name = {"damping": "damping", "coulomb_friction": "Coulomb friction"}[binding.parameter]
+    name = NAMES[binding.parameter]
     least = told_quantity(binding.interval(confidence)[0], "stiffness", identified.motion, 4)
     lines = [f"{name} limits the wall: {binding.symbol} ≥ {least} at {percent(confidence)}"]
-    longer = _times_longer(binding.estimate, confidence)
-    if longer < inf:
+    longer, why = _times_longer(binding.estimate, confidence), perhaps_zero(identified, confidence)
+    if name in why:
+        lines.append(f"{name} may be 0 for a wall: {why[name]}")
+    elif longer < inf:
         lines.append(
             f"a log {longer:.2g} times as long would halve the interval of {name}, "
             "which narrows as 1/√duration"

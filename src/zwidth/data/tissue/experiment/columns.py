@@ -159,6 +159,14 @@ def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[
             f"{table.source}: {listed(candidates)} may each be the {quantity}; say which with "
             f'columns={{"{quantity}": "{candidates[0]}"}}'
         )
+    others = [_candidates(table, other, list(table.units)) for other in QUANTITIES[1:]]
+    if not candidates and quantity == "time" and all(others):
+        raise InputError(
+            f"{table.source}: a table of load against depth, {listed([names[0] for names in others])}, "
+            "without time: how a tissue relaxes is not in it. Export the time of each row, or write it in a "
+            "column time_s where rows came at a steady rate; the steepest slope is the stiffness of a wall "
+            "to ask about, zwidth check --stiffness"
+        )
     if not candidates:
         raise InputError(
             f"{table.source}: no column is known to be the {quantity}; say which with "

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 Zero = Literal["fitted", "exact"]
 
+_ARRAYS = "arrays"
+
 MOST_TRIALS = 50
 """Of a file, that are fitted beside the one that is asked for."""
 
@@ -116,7 +118,7 @@ def fit_test(
         shapes = ", ".join(str(values.shape) for values in arrays)
         raise InputError(f"time, indentation and force are three arrays of one length; got {shapes}")
     t, x, f = arrays
-    return _fitted(Raw("arrays", t, x, f, None, ()), 1, kind, models, zero)
+    return _fitted(Raw(_ARRAYS, t, x, f, None, ()), 1, kind, models, zero)
 
 
 def _beside(
@@ -152,7 +154,11 @@ def _fitted(raw: Raw, place: int, kind: Kind | None, models: tuple[str, ...], ze
         seen_as=found,
         tried=tuple(every),
         fits=tuple(
-            _fit(each, (*trial.findings, *test.findings), shaped=k == best) for k, each in enumerate(every)
+            replace(
+                _fit(each, (*trial.findings, *test.findings), shaped=k == best),
+                units_stated=raw.source != _ARRAYS,
+            )
+            for k, each in enumerate(every)
         ),
         chosen=best,
         as_good=not_told_apart(every, best),

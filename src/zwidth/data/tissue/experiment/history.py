@@ -8,6 +8,7 @@ before, as the file counts.  The whole history is kept: a ramp is a ramp, and no
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -27,6 +28,10 @@ HOLE = 4.0
 
 SMALL = 0.02
 """Of the largest force, below which nothing is touched; and of the way, below which none was gone."""
+
+
+PIECES = 40
+"""Of a test, in each of which a mean speed and force are taken."""
 
 
 class History(NamedTuple):
@@ -68,6 +73,8 @@ def history_of(trial: Trial, kind: Kind, source: str) -> History:
         text = f"from t = {shown(float(trial.time[end]), 's', 3)} on the probe is out again: left out"
         said.append(Finding(kind="out", text=text, samples=f.size - end))
     time, x, f = trial.time[:end], x[:end], f[:end]
+    if kind != "creep":
+        _refuse_torn(time, x, f, source)
     surface = _surface(x, f)
     if surface is not None and kind == "creep":
         begin = max(int(np.argmax(x > surface)) - 1, 0)
@@ -182,6 +189,35 @@ def _end(x: Array, f: Array) -> int:
     low = (f < SMALL * f[top]) & (x < 0.5 * x.max())
     low[: top + 1] = False
     return int(np.argmax(low)) if low.any() else f.size
+
+
+def _refuse_torn(time: Array, x: Array, f: Array, source: str) -> None:
+    """Refuse a force that falls while the probe goes on, as where a needle breaks in or a specimen breaks.
+
+    f = ∫ G(t − s) v(s) ds with G ≥ 0, so that at speeds between v and V it never falls below v/V of what it
+    was; half of that here, for a probe that first gathers speed, and for speeds between the edges.
+    """
+    edges = np.linspace(0, time.size - 1, min(PIECES, time.size // 3) + 1).astype(int)
+    speed = np.diff(x[edges]) / np.diff(time[edges])
+    first = int(np.argmax(speed > 0.5 * speed.max()))
+    level = np.array([f[a:b].mean() for a, b in pairwise(edges)])[first:]
+    slowest, quickest = (each.accumulate(speed[first:]) for each in (np.minimum, np.maximum))
+    least = 0.5 * np.maximum(slowest, 0.0) / quickest * np.maximum.accumulate(level)
+    known = (
+        (slowest > 0)
+        & (least > TOUCH * noise_of_differences(f))
+        & (time[edges[first + 1 :]] > 2 * time[edges[first]])
+    )
+    if (falls := known & (level < least)).any():
+        end = int(np.argmax(falls))
+        top, place = level[: end + 1].max(), edges[first + int(np.argmax(level[: end + 1]))]
+        at = shown(float(time[place]), "s", 3)
+        most, rest = (shown(float(value), "N", 3) for value in (top, level[end]))
+        raise InputError(
+            f"{source}: the force falls from {most} to {rest} while the probe goes on, from t = {at} on: "
+            "something tears, yields or slips, and no model of a tissue here does; give the rows before "
+            f"{at} in a file of their own"
+        )
 
 
 def _surface(x: Array, f: Array) -> float | None:
