@@ -323,6 +323,8 @@ def recognise(
         if quantity in found or quantity in (chosen or {}):
             continue
         candidates = _candidates(quantity, [c for c in columns if c not in found.values()])
+        if not candidates and quantity == "time":
+            candidates = _first_in_seconds(columns, found)
         if len(candidates) > 1:
             raise InputError(
                 f"{source}: {listed(candidates)} may each be the {quantity}; "
@@ -407,6 +409,16 @@ def _candidates(quantity: str, columns: list[str]) -> list[str]:
         if found:
             return found
     return []
+
+
+def _first_in_seconds(columns: Mapping[str, Any], found: Mapping[str, str]) -> list[str]:
+    """The first column, where the file says that it is in a unit of time, however it is called."""
+    column, unit = next(iter(columns.items()), ("", None))
+    try:
+        known = isinstance(unit, str) and measured_in(spelled(unit)).dimension == _TIME
+    except InputError:
+        known = False
+    return [column] if known and column not in found.values() else []
 
 
 def check_quantity(what: str, name: str) -> None:

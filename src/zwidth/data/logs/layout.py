@@ -196,7 +196,7 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
         return none
     common = max(set(sizes), key=sizes.count)
     fits = [good and len(fields) == common for fields, good in zip(found, numeric, strict=True)]
-    start = fits.index(True)
+    start = _start(found, fits, common)
     if sum(fits[start:]) < 0.8 * len(fits[start:]):
         return none
     first = rows[start][0]
@@ -208,6 +208,25 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
         if good and k < first + MOST_SAMPLED
     )
     return _Split(delimiter, common, first, found, tuple(sample))
+
+
+_FEW = 20
+"""Rows of numbers above the names that are settings, and no table."""
+
+
+def _start(found: list[list[str]], fits: list[bool], columns: int) -> int:
+    """The first row of numbers, below those of settings.
+
+    A row that begins with a word, where most begin with a number, is a setting, or names and units beside
+    which somebody typed numbers; so is what stands above the only names.
+    """
+    rows = [k for k, good in enumerate(fits) if good]
+    first = [found[k][0] for k in rows]
+    if not are_plain(first) and 2 * sum(map(is_value, first)) > len(rows):
+        rows = rows[list(map(_is_text, first)).index(False) :]
+    between = enumerate(zip(found[: rows[min(_FEW, len(rows) - 1)]], fits, strict=False))
+    names = [k for k, (row, good) in between if not good and len(row) == columns and all(map(_is_text, row))]
+    return rows[0] if not names else next(k for k in rows if k > names[0])
 
 
 def sample_of(lines: list[str], delimiter: str, columns: int, first: int) -> Sample:
@@ -227,7 +246,7 @@ def laid_out(
     above = [line for line in lines[:first] if line.strip()]
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]
-    header, names, units_line = _header(plain, comments, delimiter, columns, _empty_at_end(sample, columns))
+    header, names, units_line = _header(plain, comments, delimiter, _filled(sample, columns))
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
@@ -249,10 +268,9 @@ def _commas(sample: Sample) -> bool:
     return any("," in field for fields in sample for field in fields)
 
 
-def _empty_at_end(sample: Sample, columns: int) -> int:
-    """Columns at the end in which nothing stands: of delimiters that end each row."""
-    filled = [k for row in sample for k, field in enumerate(row) if field]
-    return columns - 1 - max(filled, default=columns - 1)
+def _filled(sample: Sample, columns: int) -> list[bool]:
+    """Of each column whether anything stands in it."""
+    return [any(row[k] for row in sample) for k in range(columns)]
 
 
 def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
@@ -265,21 +283,27 @@ def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
 
 
 def _header(
-    plain: list[str], comments: tuple[str, ...], delimiter: str, columns: int, empty: int
+    plain: list[str], comments: tuple[str, ...], delimiter: str, filled: list[bool]
 ) -> tuple[str, list[str], list[str]]:
-    """The line with the names, its fields, and the fields of the line of units below it."""
+    """The line with the names, its fields, and the fields of the line of units below it.
+
+    A number above a column in which nothing stands is a note.  Delimiters that end each row may be missing.
+    """
+    columns = len(filled)
+    fewest = columns - filled[::-1].index(True)
 
     def fields_of(line: str) -> list[str] | None:
         for fields in _ways_to_split(line, delimiter):
             bare = fields[:columns] if not any(fields[columns:]) else fields
-            if columns - empty <= len(bare) <= columns:
-                return bare + [""] * (columns - len(bare))
+            if fewest <= len(bare) <= columns:
+                bare = bare + [""] * (columns - len(bare))
+                return ["" if is_value(f) and not k else f for f, k in zip(bare, filled, strict=True)]
         return None
 
     if plain and (below := fields_of(plain[-1])) is not None:
         names = fields_of(plain[-2]) if len(plain) > 1 else None
-        if names is not None and any(below) and all(is_unit(field.strip("[]() -")) for field in below):
-            return plain[-2], names, below
+        if names is not None and (units := _units(below, names)):
+            return plain[-2], names, units
         return plain[-1], below, []
     for other in _DELIMITERS[:-1]:
         if plain and len(split(plain[-1], other)) == columns > 1:
@@ -289,6 +313,18 @@ def _header(
         if found is not None and not line.startswith("# {"):
             return line, found, []
     return "", [], []
+
+
+def _units(below: list[str], names: list[str]) -> list[str]:
+    """Of the line above the numbers, if it holds nothing else; the first may be a word, "Sequence", where
+    each has its name above."""
+    known = [is_unit(field.strip("[]() -")) for field in below]
+    if not (any(below) and all(known[1:])):
+        return []
+    if known[0]:
+        return below
+    named = all(name or not field for name, field in zip(names, below, strict=True))
+    return ["", *below[1:]] if named and any(below[1:]) else []
 
 
 def _ways_to_split(line: str, delimiter: str) -> list[list[str]]:

@@ -1,0 +1,68 @@
+"""Texts as instruments, boards and programs write them: where the names are, and what a line holds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.data.logs.text import text_table
+
+ROWS = [
+    (f"{k / 1000:.3f}", f"{round(60 * np.sin(k / 50)) * 0.05:.2f}", f"{np.cos(k / 50):.4f}")
+    for k in range(600)
+]
+"""Of time [s], position [mm] and force [N]."""
+
+NAMES = "time_s,position_mm,force_N"
+
+
+def rows(sep: str = ",", end: str = "") -> str:
+    return "".join(sep.join(row) + end + "\n" for row in ROWS)
+
+
+HEADS = {
+    "names above units": (
+        "Source,CH1,CH2\nSecond,Volt,Volt\n",
+        "",
+        {"Source": "Second", "CH1": "Volt", "CH2": "Volt"},
+    ),
+    "names that are numbers": (
+        "x-axis,1,2\nsecond,Volt,Ampere\n",
+        "",
+        {"x-axis": "second", "1": "Volt", "2": "Ampere"},
+    ),
+    "a count and its step": (
+        "X,CH1,CH2,Start,Increment\nSequence,Volt,Volt,-3.0E-03,1.0E-03\n",
+        ",,",
+        {"X": None, "CH1": "Volt", "CH2": "Volt", "Start": None, "Increment": None},
+    ),
+    "numbers beside names and units": (
+        "spec A,spec A,spec A,,,\nTime,Position,Force,,20,80\ns,mm,N,,0.1,79\n",
+        ",,,",
+        {"Time": "s", "Position": "mm", "Force": "N"} | {f"column {k}": None for k in (4, 5, 6)},
+    ),
+    "settings with a number": ("rate,1000,\ngain,2.5,0\n\ntime_s,position_mm,force_N\n", "", None),
+    "settings with a sign": ("rate: 1000 Hz\nKp = 250\n[data]\ntime_s,position_mm,force_N\n", "", None),
+    "settings of numbers": ("1000,250,0.5\ntime_s,position_mm,force_N\n", "", None),
+}
+
+
+@pytest.mark.parametrize("name", HEADS)
+def test_names_stand_where_they_stand(name, tmp_path):
+    """Whatever else stands above the numbers or beside the names."""
+    head, end, names = HEADS[name]
+    path = tmp_path / "log.csv"
+    path.write_text(head + rows(end=end), encoding="utf-8")
+    table = text_table(path)
+    assert table.units == (names or dict.fromkeys(NAMES.split(",")))
+    read = [np.concatenate(column) for column in zip(*table.read((*table.units,)[:3]), strict=True)]
+    assert (np.array(read) == np.array(ROWS, dtype=float).T).all()
+    assert not table.notes
+
+
+def test_a_first_column_in_seconds_is_the_time(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("Source,CH1,CH2\nSecond,Volt,Volt\n" + rows(), encoding="utf-8")
+    log = zw.read_log(path, columns={"position": "CH1"}, scale={"position": "1 mm/V"})
+    assert log.sample_period == 1e-3
