@@ -66,3 +66,40 @@ def test_a_first_column_in_seconds_is_the_time(tmp_path):
     path.write_text("Source,CH1,CH2\nSecond,Volt,Volt\n" + rows(), encoding="utf-8")
     log = zw.read_log(path, columns={"position": "CH1"}, scale={"position": "1 mm/V"})
     assert log.sample_period == 1e-3
+
+
+RECORDS = {
+    "commas": "time_s:{},position_mm:{},force_N:{}\n",
+    "spaces": "time_s: {} position_mm: {} force_N: {}\r\n",
+    "tabs": "time_s={}\tposition_mm={}\tforce_N={}\t\n",
+    "words in a name": "Time (s):{}, Joint Position (mm):{}, Force (N):{}\n",
+    "JSON": '{{"time_s": {}, "arm": {{"position_mm": {}}}, "force_N": {}, "state": "on"}}\n',
+    "an array of JSON": ' {{"force_N": {2}, "time_s": {0}, "position_mm": [{1}]}},\n',
+}
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_lines_that_name_each_number(name, tmp_path):
+    """Gives the log of a table; lines of others among them are counted, a cut one is left out."""
+    path, lines = tmp_path / "log.txt", [RECORDS[name].format(*row) for row in ROWS]
+    log = tmp_path / "plain.csv"
+    log.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    lines[300] += "\nboot: reset\n"
+    path.write_bytes("".join([*lines, lines[0][:20]]).encode())
+    read, plain = zw.read_log(path), zw.read_log(log)
+    assert [f.samples for f in read.findings if f.kind in ("broken rows", "unfinished")] == [1, 1]
+    for one, other in zip(read.blocks(), plain.blocks(), strict=True):
+        assert np.array_equal(one.time, other.time)
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.hand_force, other.hand_force)
+
+
+def test_a_name_that_comes_late_is_no_part_of_the_table(tmp_path):
+    """Whoever needs it sees that its lines are left out; many of them are no table."""
+    path, line = tmp_path / "log.jsonl", RECORDS["commas"]
+    text = "".join(line.format(*row) for row in ROWS)
+    path.write_text(text + "time_s:1,mode:3\n" * 5, encoding="utf-8")
+    assert "5 rows have another number of columns" in str(zw.read_log(path).findings[0])
+    path.write_text(text + "time_s:1,mode:3\n" * 50, encoding="utf-8")
+    with pytest.raises(zw.InputError, match="it is no table"):
+        zw.read_log(path)

@@ -1,0 +1,98 @@
+"""Lines that say of each number what it is, as rows under names: JSON lines, and what serial plotters take.
+
+    {"time_ms": 0, "position": {"mm": 1.2}}     time_ms:0,position_mm:1.2     time_ms = 0  position_mm = 1.2
+
+The names are those of the first lines.  A line with another name, or that is no such line, has too many
+fields then, and is counted with the broken ones.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from io import StringIO
+from typing import Any
+
+from zwidth.data.logs.table import MOST_COLUMNS
+
+_PAIR = re.compile(r"([^\W\d][^:=,;\t|]*?)\s*[:=]\s*([^\s:=,;|]+)\s*[,;\t |]?\s*")
+_NUMBER = re.compile(r"[+-]?\.?\d")
+
+
+def record_of(line: str) -> dict[str, str] | None:
+    """What a line says by name; None where it is another line."""
+    bare = line.strip().lstrip("\ufeff[").rstrip(",]")  # an array may be written an object a line
+    if bare.startswith("{"):
+        try:
+            found = json.loads(bare, parse_float=str, parse_int=str, parse_constant=str)
+            return dict(_flat("", found))
+        except (ValueError, RecursionError):
+            return None
+    end, said = 0, {}
+    while pair := _PAIR.match(bare, end):
+        said[pair[1]] = pair[2]
+        end = pair.end()
+    return said if end == len(bare) and any(map(_NUMBER.match, said.values())) else None
+
+
+def _flat(name: str, value: Any) -> Iterator[tuple[str, str]]:
+    """Every number and text of an object of JSON, by its path."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _flat(f"{name}.{key}" if name else " ".join(key.split()), inner)
+    elif isinstance(value, list):
+        for k, inner in enumerate(value[: MOST_COLUMNS + 1]):
+            yield from _flat(f"{name}[{k}]", inner)
+    else:
+        yield name, "" if value is None else str(value)
+
+
+def names_of_records(start: str) -> list[str]:
+    """The names in lines of records; none where the lines at the start of a file are others."""
+    lines = [line for line in start.splitlines()[:-1] if line.strip()][:MOST_LOOKED_AT]
+    found = [said for line in lines if (said := record_of(line))]
+    alike = len({tuple(said) for said in found})
+    if len(found) < 2 or len(found) < 0.8 * len(lines) or 2 * alike > len(found):
+        return []
+    return list(dict.fromkeys(name for said in found for name in said))
+
+
+MOST_LOOKED_AT = 500
+"""Lines at the start, by which it is judged."""
+
+
+class Records(AbstractContextManager["Records"]):
+    """A file of records, read as a table under their names with commas between the fields."""
+
+    def __init__(self, file: Any, names: list[str]) -> None:
+        self._file, self._names = file, names
+        self._rest = b""
+        self._begun = False
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def read(self, size: int) -> bytes:
+        """Some whole lines, whatever the size; none at the end."""
+        while piece := self._file.read(max(size, 2**16)):
+            lines, end, self._rest = (self._rest + piece).rpartition(b"\n")
+            if end:
+                return self._rows(lines) + b"\n"
+        lines, self._rest = self._rest, b""
+        return self._rows(lines) if lines else b""
+
+    def _rows(self, lines: bytes) -> bytes:
+        rows = [] if self._begun else [self._names]
+        self._begun = True
+        for line in filter(str.strip, lines.decode("utf-8", "replace").splitlines()):
+            said = record_of(line)
+            if said is None or not said.keys() <= set(self._names):
+                rows.append([line, *self._names])
+            else:
+                rows.append([said.get(name, "") for name in self._names])
+        text = StringIO()
+        csv.writer(text, lineterminator="\n").writerows(rows)
+        return text.getvalue().rstrip("\n").encode()
