@@ -11,43 +11,43 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from io import StringIO
 from typing import Any
 
 from zwidth.data.logs.table import MOST_COLUMNS
 
-_PAIR = re.compile(r"([^\W\d][^:=,;\t|]*?)\s*[:=]\s*([^\s:=,;|]+)\s*[,;\t |]?\s*")
+_PAIR = re.compile(r"([^\W\d][^:=,;\t|]*)[:=]\s*([^\s:=,;|]+)(?:[,;|\s]+|$)")
 _NUMBER = re.compile(r"[+-]?\.?\d")
+_JSON = json.JSONDecoder(parse_float=str, parse_int=str, parse_constant=str)
 
 
 def record_of(line: str) -> dict[str, str] | None:
     """What a line says by name; None where it is another line."""
     bare = line.strip().lstrip("\ufeff[").rstrip(",]")  # an array may be written an object a line
     if bare.startswith("{"):
+        said: dict[str, str] = {}
         try:
-            found = json.loads(bare, parse_float=str, parse_int=str, parse_constant=str)
-            return dict(_flat("", found))
+            _flatten("", _JSON.decode(bare), said)
         except (ValueError, RecursionError):
             return None
-    end, said = 0, {}
-    while pair := _PAIR.match(bare, end):
-        said[pair[1]] = pair[2]
-        end = pair.end()
-    return said if end == len(bare) and any(map(_NUMBER.match, said.values())) else None
+        return said
+    parts = _PAIR.split(bare)
+    if any(parts[::3]) or not any(map(_NUMBER.match, parts[2::3])):
+        return None
+    return dict(zip(map(str.strip, parts[1::3]), parts[2::3], strict=True))
 
 
-def _flat(name: str, value: Any) -> Iterator[tuple[str, str]]:
+def _flatten(name: str, value: Any, said: dict[str, str]) -> None:
     """Every number and text of an object of JSON, by its path."""
     if isinstance(value, dict):
         for key, inner in value.items():
-            yield from _flat(f"{name}.{key}" if name else " ".join(key.split()), inner)
+            _flatten(f"{name}.{key}" if name else key, inner, said)
     elif isinstance(value, list):
         for k, inner in enumerate(value[: MOST_COLUMNS + 1]):
-            yield from _flat(f"{name}[{k}]", inner)
+            _flatten(f"{name}[{k}]", inner, said)
     else:
-        yield name, "" if value is None else str(value)
+        said[name] = "" if value is None else str(value)
 
 
 def names_of_records(start: str) -> list[str]:
@@ -68,7 +68,7 @@ class Records(AbstractContextManager["Records"]):
     """A file of records, read as a table under their names with commas between the fields."""
 
     def __init__(self, file: Any, names: list[str]) -> None:
-        self._file, self._names = file, names
+        self._file, self._names, self._known = file, names, set(names)
         self._rest = b""
         self._begun = False
 
@@ -89,7 +89,7 @@ class Records(AbstractContextManager["Records"]):
         self._begun = True
         for line in filter(str.strip, lines.decode("utf-8", "replace").splitlines()):
             said = record_of(line)
-            if said is None or not said.keys() <= set(self._names):
+            if said is None or not said.keys() <= self._known:
                 rows.append([line, *self._names])
             else:
                 rows.append([said.get(name, "") for name in self._names])
