@@ -103,3 +103,37 @@ def test_a_name_that_comes_late_is_no_part_of_the_table(tmp_path):
     path.write_text(text + "time_s:1,mode:3\n" * 50, encoding="utf-8")
     with pytest.raises(zw.InputError, match="it is no table"):
         zw.read_log(path)
+
+
+STAMPS = [
+    ("sec", "nanosec", 1),
+    ("header.stamp.sec", "header.stamp.nanosec", 1),
+    ("field.header.stamp.secs", "field.header.stamp.nsecs", 1),
+    ("tv_sec", "tv_usec", 1000),
+]
+
+
+def stamped(seconds: str, rest: str, unit: int, start: int = 1764300000) -> str:
+    stamps = [divmod((start * 1000 + 700 + k) * 10**6, 10**9) for k in range(len(ROWS))]
+    lines = [f"{s},{n // unit},{x},{f}\n" for (s, n), (_, x, f) in zip(stamps, ROWS, strict=True)]
+    return f"{seconds},{rest},position_mm,force_N\n" + "".join(lines)
+
+
+@pytest.mark.parametrize("names", STAMPS)
+def test_seconds_and_the_rest_of_one_are_a_time(names, tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text(stamped(*names), encoding="utf-8")
+    log = zw.read_log(path)
+    assert (log.samples, log.runs, log.sample_period) == (600, 1, 1e-3)
+    first = f",{700_000_000 // names[2]},"
+    path.write_text(stamped(*names).replace(first, ",,", 1), encoding="utf-8")
+    assert zw.read_log(path).samples == 599
+    with pytest.raises(zw.InputError, match="every row|stand"):
+        zw.read_log(path, columns={"time": names[0]}, units={"time": "s"})
+
+
+def test_what_is_more_than_a_second_is_no_rest_of_one(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text(stamped("sec", "nanosec", 1).replace(",701000000", ",7010000000"), encoding="utf-8")
+    with pytest.raises(zw.InputError, match='"nanosec" beside "sec" is more than a second'):
+        zw.read_log(path)

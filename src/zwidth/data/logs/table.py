@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -98,6 +99,61 @@ def listed(names: Mapping[str, Any] | list[str]) -> str:
     shown = [f'"{name}"' for name in list(names)[:30]]
     more = len(names) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more > 0 else "")
+
+
+_SECONDS = re.compile(r"((?:(.*)[._/ ])?)(?:secs?|seconds)", re.IGNORECASE)
+_RESTS = {
+    **dict.fromkeys(("nanosec", "nanosecs", "nanoseconds", "nsec", "nsecs"), 1),
+    **dict.fromkeys(("microsec", "microsecs", "microseconds", "usec", "usecs"), 1000),
+}
+"""[ns] Of what stands beside whole seconds."""
+
+
+def with_whole_stamps(table: Table, chosen: Collection[str | None]) -> Table:
+    """The table in which whole seconds and the rest of one, as ROS and C write a time, are one column; where
+    one of the two is chosen by its name they stay as they are."""
+    units = dict(table.units)
+    parts: dict[str, tuple[str, str, int]] = {}
+    for seconds in table.units:
+        if (found := _SECONDS.fullmatch(seconds)) is None:
+            continue
+        start, before = found.groups()
+        rests = [name for name in units if name.startswith(start) and name[len(start) :].lower() in _RESTS]
+        if len(rests) != 1 or {seconds, rests[0]} & set(chosen):
+            continue
+        called = re.search(r"(stamp|time|\bt)$", before or "", re.IGNORECASE) and before not in units
+        name = before if called else f"{before}.stamp" if before else "stamp"
+        parts[name] = seconds, rests[0], _RESTS[rests[0][len(start) :].lower()]
+        units = {name if old == seconds else old: "ns" if old == seconds else u for old, u in units.items()}
+        del units[rests[0]]
+
+    def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+        wanted = [part for name in names for part in parts.get(name, (name,))[:2]]
+        for piece in table.read(tuple(wanted)):
+            values = iter(piece)
+            yield tuple(
+                _stamps(table.source, parts[name], next(values), next(values))
+                if name in parts
+                else next(values)
+                for name in names
+            )
+
+    return replace(table, units=units, read=read) if parts else table
+
+
+def _stamps(source: str, part: tuple[str, str, int], seconds: Values, rest: Values) -> Values:
+    """Whole nanoseconds; "not a time" where either number is missing."""
+    name, of_rest, unit = part
+    known = np.isfinite(seconds) & np.isfinite(rest)
+    if known.any() and np.abs(rest[known]).max() * unit >= 1e9:
+        raise InputError(
+            f'{source}: "{of_rest}" beside "{name}" is more than a second, and no rest of one; say which is '
+            f'the time with columns={{"time": "{name}"}}'
+        )
+    found = np.full(seconds.size, np.datetime64("NaT", "ns"))
+    whole = seconds[known].astype(np.int64) * 10**9 + rest[known].astype(np.int64) * unit
+    found[known] = whole.astype("datetime64[ns]")
+    return found
 
 
 BLOCK_SIZE = 2**18
