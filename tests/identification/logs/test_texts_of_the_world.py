@@ -128,7 +128,7 @@ def test_seconds_and_the_rest_of_one_are_a_time(names, tmp_path):
     first = f",{700_000_000 // names[2]},"
     path.write_text(stamped(*names).replace(first, ",,", 1), encoding="utf-8")
     assert zw.read_log(path).samples == 599
-    with pytest.raises(zw.InputError, match="every row|stand"):
+    with pytest.raises(zw.InputError, match="no common period"):
         zw.read_log(path, columns={"time": names[0]}, units={"time": "s"})
 
 
@@ -137,3 +137,22 @@ def test_what_is_more_than_a_second_is_no_rest_of_one(tmp_path):
     path.write_text(stamped("sec", "nanosec", 1).replace(",701000000", ",7010000000"), encoding="utf-8")
     with pytest.raises(zw.InputError, match='"nanosec" beside "sec" is more than a second'):
         zw.read_log(path)
+
+
+def test_a_long_table_is_refused_with_what_it_is(tmp_path):
+    path = tmp_path / "long.csv"
+    lines = [f"{t},/arm/position,{x}\n{t},/arm/force,{f}\n" for t, x, f in ROWS]
+    path.write_text("timestamp,topic,value\n" + "".join(lines), encoding="utf-8")
+    with pytest.raises(zw.InputError, match='long table: column "topic" names 2 .*columns="topic"'):
+        zw.read_log(path)
+    path.write_text("timestamp,name,value\n" + "".join(lines[:1] * 9).replace("force", "position"))
+    assert list(text_table(path).units) == ["timestamp", "name", "value"]  # one alone is a table
+
+
+def test_two_topics_in_turn_are_refused_with_what_to_do(tmp_path):
+    path = tmp_path / "log.csv"
+    lines = [f"{t},{x},\n{t}5,,{f}\n" for t, x, f in ROWS]
+    path.write_text(NAMES + "\n" + "".join(lines), encoding="utf-8")
+    with pytest.raises(zw.InputError, match='"position_mm" has 600, "force_N" has 600, in turn.*ffill'):
+        zw.read_log(path)
+    assert zw.read_log(path, columns={"hand_force": None}).samples == 600

@@ -26,7 +26,7 @@ from zwidth.data.logs.cells import (
     text_of,
 )
 from zwidth.data.logs.layout import Layout, is_comment, layout_of, split
-from zwidth.data.logs.table import Finding, Table, Values
+from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
 _PIECE = 2**23
@@ -45,6 +45,7 @@ def text_table(path: Path) -> Table:
         whole = not file.read(1)
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
+    _refuse_long_table(layout, path)
     attributes = _attributes(layout)
     table = Table(
         source=str(path),
@@ -68,6 +69,25 @@ def _refuse_one_column(layout: Layout, path: Path) -> None:
                 raise InputError(
                     f"{path}: the header splits into {fields} names at each {name}, but the rows do not; "
                     "use one delimiter throughout"
+                )
+
+
+_OF_NAMES = set("topic name signal channel variable series key field metric label parameter".split())
+_OF_VALUES = {"value", "val", "data", "wert", "reading"}
+
+
+def _refuse_long_table(layout: Layout, path: Path) -> None:
+    """One in which a column names the quantity whose number stands in another."""
+    bare = {name: name.strip("_ ").lower() for name in layout.names}
+    values = [name for name in layout.names if bare[name] in _OF_VALUES]
+    for name in layout.names if values else ():
+        if bare[name] in _OF_NAMES and layout.kind(name) == "text":
+            found = list(dict.fromkeys(field for field in layout.fields(name) if field))
+            if len(found) > 1:
+                raise InputError(
+                    f'{path} is a long table: column "{name}" names {len(found)} quantities, {listed(found)}, '
+                    f'and "{values[0]}" holds the numbers of them all; make a column of each, in pandas with '
+                    f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{values[0]}")'
                 )
 
 
