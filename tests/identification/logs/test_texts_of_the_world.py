@@ -143,7 +143,7 @@ def test_a_long_table_is_refused_with_what_it_is(tmp_path):
     path = tmp_path / "long.csv"
     lines = [f"{t},/arm/position,{x}\n{t},/arm/force,{f}\n" for t, x, f in ROWS]
     path.write_text("timestamp,topic,value\n" + "".join(lines), encoding="utf-8")
-    with pytest.raises(zw.InputError, match='long table: column "topic" names 2 .*columns="topic"'):
+    with pytest.raises(zw.InputError, match=r'long table: column "topic" names 2 .*columns="topic"'):
         zw.read_log(path)
     path.write_text("timestamp,name,value\n" + "".join(lines[:1] * 9).replace("force", "position"))
     assert list(text_table(path).units) == ["timestamp", "name", "value"]  # one alone is a table
@@ -153,6 +153,52 @@ def test_two_topics_in_turn_are_refused_with_what_to_do(tmp_path):
     path = tmp_path / "log.csv"
     lines = [f"{t},{x},\n{t}5,,{f}\n" for t, x, f in ROWS]
     path.write_text(NAMES + "\n" + "".join(lines), encoding="utf-8")
-    with pytest.raises(zw.InputError, match='"position_mm" has 600, "force_N" has 600, in turn.*ffill'):
+    with pytest.raises(zw.InputError, match=r'"position_mm" has 600, "force_N" has 600, in turn.*ffill'):
         zw.read_log(path)
     assert zw.read_log(path, columns={"hand_force": None}).samples == 600
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")])
+def test_the_unit_that_is_asked_for_is_that_of_the_stamps(factor, unit, tmp_path):
+    path = tmp_path / "log.csv"
+    lines = [f"{float(t) * factor:.3f},{x}\n" for t, x, _ in ROWS]
+    path.write_text("t,position_mm\n" + "".join(lines), encoding="utf-8")
+    with pytest.raises(zw.InputError, match=f'most likely {unit}: state it with units={{"time": "{unit}"}}'):
+        zw.read_log(path)
+    assert zw.read_log(path, units={"time": unit}).sample_period == pytest.approx(1e-3)
+
+
+COUNTS = "time_s,encoder_counts,force_counts\n" + "".join(
+    f"{t},{round(float(x) * 500)},{round(float(f) * 200)}\n" for t, x, f in ROWS
+)
+RAW = {"columns": {"hand_force": "force_counts"}}
+
+
+@pytest.mark.parametrize(
+    ("stated", "motion"),
+    [
+        ({"scale": {"hand_force": "0.005 N*m/count"}, "counts_per_turn": 4096}, "rotary"),
+        ({"scale": {"hand_force": "0.005 N*m/count"}, "resolution": 0.001}, "rotary"),
+        ({"scale": {"hand_force": "0.005 N/count"}, "resolution": 0.001}, "linear"),
+        ({"scale": {"hand_force": "0.005 N/count"}, "resolution": "10 um"}, "linear"),
+    ],
+)
+def test_counts_turn_where_the_force_is_a_torque(stated, motion, tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text(COUNTS, encoding="utf-8")
+    assert zw.read_log(path, **RAW, **stated).motion == motion
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        ({"counts_per_turn": 4096}, r"0.01 N\*m/count"),
+        ({"resolution": 0.001}, "0.01 N/count"),
+        ({"scale": {"hand_force": "0.005 N/count"}, "counts_per_turn": 4096}, "a torque, such as"),
+    ],
+)
+def test_advice_for_counts_is_of_the_motion(stated, message, tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text(COUNTS, encoding="utf-8")
+    with pytest.raises(zw.InputError, match=message):
+        zw.read_log(path, **RAW, **stated)

@@ -267,8 +267,8 @@ def _in_turn(meaning: Meaning, tally: Counter[str]) -> str:
         return ""
     said = ", ".join(f'"{column}" has {count}' for column, count in counts.items())
     return (
-        f": of {tally['rows']} {said}, in turn, as when two topics are written as they come; give each row the "
-        "newest of both, in pandas with table.ffill(), or export them at common times"
+        f": of {tally['rows']} {said}, in turn, as when two topics are written as they come; give each row "
+        "the newest of both, in pandas with table.ffill(), or export them at common times"
     )
 
 

@@ -72,7 +72,7 @@ def _refuse_one_column(layout: Layout, path: Path) -> None:
                 )
 
 
-_OF_NAMES = set("topic name signal channel variable series key field metric label parameter".split())
+_OF_NAMES = "topic name signal channel variable series key field metric label parameter"
 _OF_VALUES = {"value", "val", "data", "wert", "reading"}
 
 
@@ -81,12 +81,12 @@ def _refuse_long_table(layout: Layout, path: Path) -> None:
     bare = {name: name.strip("_ ").lower() for name in layout.names}
     values = [name for name in layout.names if bare[name] in _OF_VALUES]
     for name in layout.names if values else ():
-        if bare[name] in _OF_NAMES and layout.kind(name) == "text":
+        if bare[name] in _OF_NAMES.split() and layout.kind(name) == "text":
             found = list(dict.fromkeys(field for field in layout.fields(name) if field))
             if len(found) > 1:
                 raise InputError(
-                    f'{path} is a long table: column "{name}" names {len(found)} quantities, {listed(found)}, '
-                    f'and "{values[0]}" holds the numbers of them all; make a column of each, in pandas with '
+                    f'{path} is a long table: column "{name}" names {len(found)} quantities, {listed(found)}'
+                    f', and "{values[0]}" holds the numbers of them all; make a column of each, in pandas with '
                     f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{values[0]}")'
                 )
 
