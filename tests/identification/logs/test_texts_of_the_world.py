@@ -202,3 +202,35 @@ def test_advice_for_counts_is_of_the_motion(stated, message, tmp_path):
     path.write_text(COUNTS, encoding="utf-8")
     with pytest.raises(zw.InputError, match=message):
         zw.read_log(path, **RAW, **stated)
+
+
+LVM = (
+    "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\t{}\nTime\t10:15:03.12\n***End_of_Header***\t\n\t\n"
+    "Channels\t2\t\t\nSamples\t600\t600\t\nY_Unit_Label\tVolts\tSome\t\nX_Dimension\tTime\tTime\t\n"
+    "X0\t0.0E+0\t0.0E+0\t\nDelta_X\t0.001\t0.001\t\n***End_of_Header***\t\t\t\n"
+)
+LVMS = {
+    "one": (LVM + "X_Value\tUntitled\tUntitled 1\tComment\n", "{0}\t{1}\t{2}\n"),
+    "comments": (LVM + "X_Value\tUntitled\tUntitled 1\tComment\n", "{0}\t{1}\t{2}\t\n"),
+    "many": (LVM + "X_Value\tUntitled\tX_Value\tUntitled 1\tComment\n", "{0}\t{1}\t{0}\t{2}\n"),
+    "no": (LVM + "X_Value\tUntitled\tUntitled 1\tComment\n", "\t{1}\t{2}\n"),
+}
+
+
+@pytest.mark.parametrize("name", LVMS)
+def test_measurements_of_labview_keep_their_names(name, tmp_path):
+    """And the units that are known; a head before each segment is no row."""
+    path, (head, line) = tmp_path / "log.lvm", LVMS[name]
+    whole = head.format(name) + "".join(line.format(*row) for row in ROWS)
+    segment = whole[whole.index("\t\nChannels") :]
+    path.write_text(whole + segment, encoding="utf-8")
+    units = text_table(path).units
+    assert (units["X_Value"], units["Untitled"], units["Untitled 1"]) == (
+        None if name == "no" else "s",
+        "Volts",
+        None,
+    )
+    given = {"columns": {"position": "Untitled"}, "scale": {"position": "1 mm/V"}}
+    log = zw.read_log(path, **given, **({"sample_rate": 1000} if name == "no" else {}))
+    assert (log.samples, log.sample_period) == (1200, 1e-3)
+    assert "broken rows" not in {finding.kind for finding in log.findings}

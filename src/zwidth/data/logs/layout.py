@@ -289,6 +289,8 @@ def _header(
 
     A number above a column in which nothing stands is a note.  Delimiters that end each row may be missing.
     """
+    if head := next((line for line in reversed(plain) if line.startswith(LABVIEW + delimiter)), ""):
+        return _of_labview(head, plain, delimiter, filled)
     columns = len(filled)
     fewest = columns - filled[::-1].index(True)
 
@@ -313,6 +315,26 @@ def _header(
         if found is not None and not line.startswith("# {"):
             return line, found, []
     return "", [], []
+
+
+LABVIEW = "X_Value"
+"""How the names in a LabVIEW measurement begin."""
+
+
+def _of_labview(
+    head: str, plain: list[str], delimiter: str, filled: list[bool]
+) -> tuple[str, list[str], list[str]]:
+    """The same of a measurement that LabVIEW wrote: units stand above the names by the word Y_Unit_Label, and
+    Comment is a name where no row has a comment."""
+    said = {(fields := split(line, delimiter))[0]: fields[1:] for line in plain}
+    labels = iter(said.get("Y_Unit_Label", []))
+    of_x = "s" if "Time" in said.get("X_Dimension", ["Time"]) else ""
+    names = [*split(head, delimiter), *[""] * len(filled)][: len(filled)]
+    units = [
+        (of_x if full else "") if name == LABVIEW else next(labels, "")
+        for name, full in zip(names, filled, strict=True)
+    ]
+    return head, names, [unit if is_unit(unit) else "" for unit in units]
 
 
 def _units(below: list[str], names: list[str]) -> list[str]:

@@ -25,7 +25,7 @@ from zwidth.data.logs.cells import (
     stamps_of,
     text_of,
 )
-from zwidth.data.logs.layout import Layout, is_comment, layout_of, split
+from zwidth.data.logs.layout import LABVIEW, Layout, is_comment, layout_of, split
 from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
@@ -86,8 +86,8 @@ def _refuse_long_table(layout: Layout, path: Path) -> None:
             if len(found) > 1:
                 raise InputError(
                     f'{path} is a long table: column "{name}" names {len(found)} quantities, {listed(found)}'
-                    f', and "{values[0]}" holds the numbers of them all; make a column of each, in pandas with '
-                    f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{values[0]}")'
+                    f', and "{values[0]}" holds the numbers of them all; make a column of each, in pandas '
+                    f'with table.pivot(index="{layout.names[0]}", columns="{name}", values="{values[0]}")'
                 )
 
 
@@ -238,6 +238,8 @@ class Parser:
         for sign in (b"#", b"%", b"//"):
             if sign[:1] in lines:  # one byte is searched for far quicker than two
                 lines = re.sub(rb"(?m)^" + sign + rb"[^\n]*\n?", b"", lines)
+        if self.layout.header.startswith(LABVIEW):  # which may write its head again for each segment
+            lines = re.sub(rb"(?m)^(?:(?!X_Value|NaN|Inf)[A-Z*][^\n]*|[\t\r]*)\n", b"", lines)
         if self._letter and self._letter in lines:
             pattern = rb"(?m)^" + re.escape(self.layout.header.encode()) + rb"\r?\n"
             lines, count = re.subn(pattern, b"", lines)
