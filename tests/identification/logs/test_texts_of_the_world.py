@@ -234,3 +234,21 @@ def test_measurements_of_labview_keep_their_names(name, tmp_path):
     log = zw.read_log(path, **given, **({"sample_rate": 1000} if name == "no" else {}))
     assert (log.samples, log.sample_period) == (1200, 1e-3)
     assert "broken rows" not in {finding.kind for finding in log.findings}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "(1764300000.249713) vcan0 044#2A366C2BBA\n",
+        " (1764300000.249713)  can0  18FF0233   [8]  01 02 03 04 05 06 07 08\n",
+        "  can1  123   [2]  11 22\n",
+        "Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2\n166064,0000021A,false,Rx,0,2,FE,36\n",
+        "timestamp,arbitration_id,extended,remote,error,dlc,data\n0.1,0x21a,0,0,0,2,/jY=\n",
+        "date Wed Nov 4 10:15:03 am 2026\nbase hex  timestamps absolute\n0.015 1 21A Rx d 2 FE 36\n",
+    ],
+)
+def test_frames_of_a_bus_are_refused_with_what_to_do(line, tmp_path):
+    path = tmp_path / "bus.log"
+    path.write_text(line * 50, encoding="utf-8")
+    with pytest.raises(zw.InputError, match="frames of a CAN bus .* Save Decoded Frames"):
+        zw.read_log(path)

@@ -93,6 +93,14 @@ def _kind(fields: list[str]) -> Kind:
     return kind if 2 * shares[kind] > len(values) else "text"
 
 
+_OF_A_BUS = re.compile(
+    r"^\s*(?:\([^()]+\)\s+)?\w+\s+[0-9A-F]{3,8}(?:##?[0-9A-FR]|\s+\[\d+\]\s)"  # candump, written or printed
+    r"|^Time ?Stamp[,;]ID[,;]Extended|^timestamp,arbitration_id,"  # SavvyCAN, python-can
+    r"|^;\$FILEVERSION=|^base (?:hex|dec)\s+timestamps ",  # PCAN-View, Vector
+    re.MULTILINE,
+)
+
+
 @lru_cache(maxsize=2)
 def layout_of(text: str, source: str, whole: bool) -> Layout:
     """The layout of a text that starts so; `whole` says that this is all of it.
@@ -104,6 +112,12 @@ def layout_of(text: str, source: str, whole: bool) -> Layout:
         lines = lines[:-1]  # the last is cut in the middle
     if not text.strip():
         raise InputError(f"{source} is empty: {len(text)} characters, none of them a number")
+    if _OF_A_BUS.search(text[:4096]):
+        raise InputError(
+            f"{source} holds the frames of a CAN bus as they passed: the numbers stand in their bytes, and only "
+            "the bus's DBC file, or its maker, says where; decode it to a table with a column for each signal, "
+            "such as SavvyCAN's File, Save Decoded Frames, writes as CSV"
+        )
     rows = [(k, line) for k, line in enumerate(lines) if line.strip() and not is_comment(line)]
     found = _most_columns(lines, rows)
     if found.first < 0:
