@@ -215,16 +215,13 @@ def _factor(where: str, quantity: str, unit: str | None, scale: object, turning:
     return factor if scale is None else factor * float(parse_number(scale, "1", f"{where}: scale"))
 
 
-_MOST_STEPS = {"s": 0.06, "ms": 60.0, "us": 6e4}
-"""Up to 60 ms, and from 60 us on in the next finer unit, is how often devices are recorded."""
-
-
 def _ask_for_unit_of_time(where: str, table: Table, column: str) -> NoReturn:
-    """With the unit that the stamps are likely to be in."""
-    stamps = np.asarray(next(iter(table.read((column,))), ((0.0,),))[0], dtype=np.float64)
-    steps = np.abs(np.diff(stamps))
+    """With the one in which the stamps are 60 us to 60 ms apart, as recordings are."""
+    steps = np.abs(np.diff(np.asarray(next(iter(table.read((column,))))[0], dtype=np.float64)))
     step = float(np.median(steps[steps > 0])) if steps.any() else 1.0
-    likely = next((unit for unit, most in _MOST_STEPS.items() if step < most), "ns")
+    likely = next(
+        unit for unit, most in (("s", 0.06), ("ms", 60), ("us", 6e4), ("ns", np.inf)) if step < most
+    )
     raise InputError(
         f"{where} has no unit; steps of {step:g} are most likely {likely}: state it with "
         f'units={{"time": "{likely}"}}'

@@ -94,7 +94,7 @@ def _kind(fields: list[str]) -> Kind:
 
 
 _OF_A_BUS = re.compile(
-    r"^\s*(?:\([^()]+\)\s+)?\w+\s+[0-9A-F]{3,8}(?:##?[0-9A-FR]|\s+\[\d+\]\s)"  # candump, written or printed
+    r"^\s*(?:\([^()]+\)\s+)?\w+\s+[0-9A-F]{3,8}(?:##?[0-9A-FR]|\s+\[\d+\]\s)"  # candump
     r"|^Time ?Stamp[,;]ID[,;]Extended|^timestamp,arbitration_id,"  # SavvyCAN, python-can
     r"|^;\$FILEVERSION=|^base (?:hex|dec)\s+timestamps ",  # PCAN-View, Vector
     re.MULTILINE,
@@ -114,9 +114,9 @@ def layout_of(text: str, source: str, whole: bool) -> Layout:
         raise InputError(f"{source} is empty: {len(text)} characters, none of them a number")
     if _OF_A_BUS.search(text[:4096]):
         raise InputError(
-            f"{source} holds the frames of a CAN bus as they passed: the numbers stand in their bytes, and only "
-            "the bus's DBC file, or its maker, says where; decode it to a table with a column for each signal, "
-            "such as SavvyCAN's File, Save Decoded Frames, writes as CSV"
+            f"{source} holds the frames of a CAN bus: the numbers stand in their bytes, and its DBC file, or "
+            "its maker, says where; decode it to a table with a column for each signal, such as SavvyCAN "
+            "writes by File, Save Decoded Frames"
         )
     rows = [(k, line) for k, line in enumerate(lines) if line.strip() and not is_comment(line)]
     found = _most_columns(lines, rows)
@@ -210,7 +210,7 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
         return none
     common = max(set(sizes), key=sizes.count)
     fits = [good and len(fields) == common for fields, good in zip(found, numeric, strict=True)]
-    start = _start(found, fits, common)
+    start = _start(found, fits)
     if sum(fits[start:]) < 0.8 * len(fits[start:]):
         return none
     first = rows[start][0]
@@ -224,23 +224,14 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
     return _Split(delimiter, common, first, found, tuple(sample))
 
 
-_FEW = 20
-"""Rows of numbers above the names that are settings, and no table."""
-
-
-def _start(found: list[list[str]], fits: list[bool], columns: int) -> int:
-    """The first row of numbers, below those of settings.
-
-    A row that begins with a word, where most begin with a number, is a setting, or names and units beside
-    which somebody typed numbers; so is what stands above the only names.
-    """
+def _start(found: list[list[str]], fits: list[bool]) -> int:
+    """The first row of numbers; one that begins with a word, where most begin with a number, is a setting, or
+    names and units beside which somebody typed numbers."""
     rows = [k for k, good in enumerate(fits) if good]
     first = [found[k][0] for k in rows]
-    if not are_plain(first) and 2 * sum(map(is_value, first)) > len(rows):
-        rows = rows[list(map(_is_text, first)).index(False) :]
-    between = enumerate(zip(found[: rows[min(_FEW, len(rows) - 1)]], fits, strict=False))
-    names = [k for k, (row, good) in between if not good and len(row) == columns and all(map(_is_text, row))]
-    return rows[0] if not names else next(k for k in rows if k > names[0])
+    if are_plain(first) or 2 * sum(map(is_value, first)) <= len(rows):
+        return rows[0]
+    return rows[list(map(_is_text, first)).index(False)]
 
 
 def sample_of(lines: list[str], delimiter: str, columns: int, first: int) -> Sample:

@@ -248,9 +248,10 @@ def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, 
     rows = recording.rows(tally)
     start = next(rows, None)
     if start is None or start.time.size < 2:
+        names = meaning.columns.values()
         raise InputError(
-            f"{table.source} holds fewer than two rows with numbers in the columns that are used"
-            + _in_turn(meaning, tally)
+            f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; where "
+            "topics are written in turn, give each row the newest of each, in pandas with table.ffill()"
         )
     clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
     cutter = Cutter(clock, table.source, tally)
@@ -258,18 +259,6 @@ def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, 
     survey.look(cutter.segments(chain([start], rows)))
     refuse_survey(survey, tally, table.source)
     return _contents(recording, cutter, survey, tally, stated)
-
-
-def _in_turn(meaning: Meaning, tally: Counter[str]) -> str:
-    """Where each column has its numbers in rows of its own: what that is, and what to do."""
-    counts = {column: tally[quantity] for quantity, column in meaning.columns.items()}
-    if min(counts.values()) < 2:
-        return ""
-    said = ", ".join(f'"{column}" has {count}' for column, count in counts.items())
-    return (
-        f": of {tally['rows']} {said}, in turn, as when two topics are written as they come; give each row "
-        "the newest of both, in pandas with table.ffill(), or export them at common times"
-    )
 
 
 def _contents(

@@ -2,8 +2,8 @@
 
     {"time_ms": 0, "position": {"mm": 1.2}}     time_ms:0,position_mm:1.2     time_ms = 0  position_mm = 1.2
 
-The names are those of the first lines.  A line with another name, or that is no such line, has too many
-fields then, and is counted with the broken ones.
+The names are those of the first lines.  A line with another name, or that is no such line, becomes a row with
+too many fields, and is counted with the broken ones.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from contextlib import AbstractContextManager
 from io import StringIO
 from typing import Any
 
-from zwidth.data.logs.table import MOST_COLUMNS
-
 _PAIR = re.compile(r"([^\W\d][^:=,;\t|]*)[:=]\s*([^\s:=,;|]+)(?:[,;|\s]+|$)")
 _NUMBER = re.compile(r"[+-]?\.?\d")
 _JSON = json.JSONDecoder(parse_float=str, parse_int=str, parse_constant=str)
+_LOOKED_AT = 500
+"""Lines at the start, by which it is judged."""
 
 
 def record_of(line: str) -> dict[str, str] | None:
@@ -44,7 +44,7 @@ def _flatten(name: str, value: Any, said: dict[str, str]) -> None:
         for key, inner in value.items():
             _flatten(f"{name}.{key}" if name else key, inner, said)
     elif isinstance(value, list):
-        for k, inner in enumerate(value[: MOST_COLUMNS + 1]):
+        for k, inner in enumerate(value):
             _flatten(f"{name}[{k}]", inner, said)
     else:
         said[name] = "" if value is None else str(value)
@@ -52,7 +52,7 @@ def _flatten(name: str, value: Any, said: dict[str, str]) -> None:
 
 def names_of_records(start: str) -> list[str]:
     """The names in lines of records; none where the lines at the start of a file are others."""
-    lines = [line for line in start.splitlines()[:-1] if line.strip()][:MOST_LOOKED_AT]
+    lines = [line for line in start.splitlines()[:-1] if line.strip()][:_LOOKED_AT]
     found = [said for line in lines if (said := record_of(line))]
     alike = len({tuple(said) for said in found})
     if len(found) < 2 or len(found) < 0.8 * len(lines) or 2 * alike > len(found):
@@ -60,17 +60,11 @@ def names_of_records(start: str) -> list[str]:
     return list(dict.fromkeys(name for said in found for name in said))
 
 
-MOST_LOOKED_AT = 500
-"""Lines at the start, by which it is judged."""
-
-
 class Records(AbstractContextManager["Records"]):
     """A file of records, read as a table under their names with commas between the fields."""
 
     def __init__(self, file: Any, names: list[str]) -> None:
-        self._file, self._names, self._known = file, names, set(names)
-        self._rest = b""
-        self._begun = False
+        self._file, self._names, self._head, self._rest = file, names, [names], b""
 
     def __exit__(self, *_: object) -> None:
         self._file.close()
@@ -81,18 +75,17 @@ class Records(AbstractContextManager["Records"]):
             lines, end, self._rest = (self._rest + piece).rpartition(b"\n")
             if end:
                 return self._rows(lines) + b"\n"
+            if len(self._rest) > 2**24:
+                return self._rest  # no line of a table, which the reader says
         lines, self._rest = self._rest, b""
         return self._rows(lines) if lines else b""
 
     def _rows(self, lines: bytes) -> bytes:
-        rows = [] if self._begun else [self._names]
-        self._begun = True
+        rows, self._head = self._head, []
         for line in filter(str.strip, lines.decode("utf-8", "replace").splitlines()):
-            said = record_of(line)
-            if said is None or not said.keys() <= self._known:
-                rows.append([line, *self._names])
-            else:
-                rows.append([said.get(name, "") for name in self._names])
+            said = record_of(line) or {line: ""}
+            row = [said.pop(name, "") for name in self._names]
+            rows.append([*row, *said])  # what is left of it breaks the row
         text = StringIO()
         csv.writer(text, lineterminator="\n").writerows(rows)
         return text.getvalue().rstrip("\n").encode()

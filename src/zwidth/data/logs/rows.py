@@ -136,8 +136,6 @@ class Recording:
             np.isfinite(column.min(initial=0.0)) and np.isfinite(column.max(initial=0.0)) for column in used
         ):
             return rows
-        for quantity, column in rows._asdict().items():
-            tally[quantity] += 0 if column is None else int(np.isfinite(column).sum())
         finite = np.logical_and.reduce([np.isfinite(column) for column in used])
         infinite = np.logical_or.reduce([np.isinf(column) for column in used])
         tally["infinite"] += int(infinite.sum())

@@ -101,59 +101,55 @@ def listed(names: Mapping[str, Any] | list[str]) -> str:
     return ", ".join(shown) + (f" and {more} more" if more > 0 else "")
 
 
-_SECONDS = re.compile(r"((?:(.*)[._/ ])?)(?:secs?|seconds)", re.IGNORECASE)
-_RESTS = {
-    **dict.fromkeys(("nanosec", "nanosecs", "nanoseconds", "nsec", "nsecs"), 1),
-    **dict.fromkeys(("microsec", "microsecs", "microseconds", "usec", "usecs"), 1000),
-}
+_SECONDS = re.compile(r"((.*)[._/ ]|)(?:secs?|seconds)", re.IGNORECASE)
+_RESTS = {"nanosec": 1, "nanosecond": 1, "nsec": 1, "microsec": 1000, "microsecond": 1000, "usec": 1000}
 """[ns] Of what stands beside whole seconds."""
 
 
 def with_whole_stamps(table: Table, chosen: Collection[str | None]) -> Table:
     """The table in which whole seconds and the rest of one, as ROS and C write a time, are one column; where
     one of the two is chosen by its name they stay as they are."""
-    units = dict(table.units)
-    parts: dict[str, tuple[str, str, int]] = {}
     for seconds in table.units:
-        if (found := _SECONDS.fullmatch(seconds)) is None:
-            continue
-        start, before = found.groups()
-        rests = [name for name in units if name.startswith(start) and name[len(start) :].lower() in _RESTS]
-        if len(rests) != 1 or {seconds, rests[0]} & set(chosen):
-            continue
-        called = re.search(r"(stamp|time|\bt)$", before or "", re.IGNORECASE) and before not in units
-        name = before if called else f"{before}.stamp" if before else "stamp"
-        parts[name] = seconds, rests[0], _RESTS[rests[0][len(start) :].lower()]
-        units = {name if old == seconds else old: "ns" if old == seconds else u for old, u in units.items()}
-        del units[rests[0]]
+        if found := _SECONDS.fullmatch(seconds):
+            start, before = found[1], found[2] or ""
+            units = {n: _RESTS.get(n.removeprefix(start).lower().rstrip("s")) for n in table.units}
+            rests = [n for n, unit in units.items() if unit and n.startswith(start)]
+            known = re.search(r"(stamp|time|\bt)$", before, re.IGNORECASE)
+            name = before if known else f"{before}.stamp".lstrip(".")
+            if len(rests) == 1 and name not in units and not {seconds, *rests} & set(chosen):
+                return _joined(table, name, seconds, rests[0], units[rests[0]] or 1)
+    return table
 
+
+def _joined(table: Table, joined: str, seconds: str, rest: str, unit: int) -> Table:
     def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
-        wanted = [part for name in names for part in parts.get(name, (name,))[:2]]
-        for piece in table.read(tuple(wanted)):
-            values = iter(piece)
-            yield tuple(
-                _stamps(table.source, parts[name], next(values), next(values))
-                if name in parts
-                else next(values)
-                for name in names
+        wanted = {part: None for n in names for part in ((seconds, rest) if n == joined else (n,))}
+        for piece in table.read((*wanted,)):
+            columns = dict(zip(wanted, piece, strict=True))
+            if joined in names:
+                columns[joined] = _stamps(columns[seconds], columns[rest] * unit)
+            yield tuple(columns[name] for name in names)
+
+    def _stamps(whole: Values, part: Values) -> Values:
+        """Nanoseconds; "not a time" where either number is missing."""
+        known = np.isfinite(whole) & np.isfinite(part)
+        if (np.abs(part[known]) >= 1e9).any():
+            raise InputError(
+                f'{table.source}: "{rest}" beside "{seconds}" is more than a second, and no rest of one; say '
+                f'which is the time with columns={{"time": "{seconds}"}}'
             )
-
-    return replace(table, units=units, read=read) if parts else table
-
-
-def _stamps(source: str, part: tuple[str, str, int], seconds: Values, rest: Values) -> Values:
-    """Whole nanoseconds; "not a time" where either number is missing."""
-    name, of_rest, unit = part
-    known = np.isfinite(seconds) & np.isfinite(rest)
-    if known.any() and np.abs(rest[known]).max() * unit >= 1e9:
-        raise InputError(
-            f'{source}: "{of_rest}" beside "{name}" is more than a second, and no rest of one; say which is '
-            f'the time with columns={{"time": "{name}"}}'
+        stamps = np.full(whole.size, np.datetime64("NaT", "ns"))
+        stamps[known] = (whole[known].astype(np.int64) * 10**9 + part[known].astype(np.int64)).astype(
+            "M8[ns]"
         )
-    found = np.full(seconds.size, np.datetime64("NaT", "ns"))
-    whole = seconds[known].astype(np.int64) * 10**9 + rest[known].astype(np.int64) * unit
-    found[known] = whole.astype("datetime64[ns]")
-    return found
+        return stamps
+
+    units = {
+        joined if n == seconds else n: "ns" if n == seconds else u
+        for n, u in table.units.items()
+        if n != rest
+    }
+    return replace(table, units=units, read=read)
 
 
 BLOCK_SIZE = 2**18

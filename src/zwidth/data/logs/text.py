@@ -73,22 +73,20 @@ def _refuse_one_column(layout: Layout, path: Path) -> None:
 
 
 _OF_NAMES = "topic name signal channel variable series key field metric label parameter"
-_OF_VALUES = {"value", "val", "data", "wert", "reading"}
 
 
 def _refuse_long_table(layout: Layout, path: Path) -> None:
     """One in which a column names the quantity whose number stands in another."""
-    bare = {name: name.strip("_ ").lower() for name in layout.names}
-    values = [name for name in layout.names if bare[name] in _OF_VALUES]
-    for name in layout.names if values else ():
-        if bare[name] in _OF_NAMES.split() and layout.kind(name) == "text":
-            found = list(dict.fromkeys(field for field in layout.fields(name) if field))
-            if len(found) > 1:
-                raise InputError(
-                    f'{path} is a long table: column "{name}" names {len(found)} quantities, {listed(found)}'
-                    f', and "{values[0]}" holds the numbers of them all; make a column of each, in pandas '
-                    f'with table.pivot(index="{layout.names[0]}", columns="{name}", values="{values[0]}")'
-                )
+    bare = {name.strip("_ ").lower(): name for name in layout.names}
+    name = next((bare[word] for word in _OF_NAMES.split() if word in bare), "")
+    if name and "value" in bare and layout.kind(name) == "text":
+        found = list(dict.fromkeys(filter(None, layout.fields(name))))
+        if len(found) > 1:
+            raise InputError(
+                f'{path} is a long table: its column "{bare["value"]}" holds {len(found)} quantities, '
+                f'{listed(found)}, by "{name}"; make a column of each, in pandas with '
+                f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{bare["value"]}")'
+            )
 
 
 def _attributes(layout: Layout) -> dict[str, Any]:
