@@ -226,12 +226,14 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
 
 def _start(found: list[list[str]], fits: list[bool]) -> int:
     """The first row of numbers; one that begins with a word, where most begin with a number, is a setting, or
-    names and units beside which somebody typed numbers."""
+    names and units beside which somebody typed numbers, if words of names stand in it or below it."""
     rows = [k for k, good in enumerate(fits) if good]
     first = [found[k][0] for k in rows]
     if are_plain(first) or 2 * sum(map(is_value, first)) <= len(rows):
         return rows[0]
-    return rows[list(map(_is_text, first)).index(False)]
+    above = range(rows[list(map(_is_text, first)).index(False)])
+    names = [k for k in above if sum(map(_is_text, found[k])) > 1]
+    return next(k for k in rows if k > max(names, default=-1))
 
 
 def sample_of(lines: list[str], delimiter: str, columns: int, first: int) -> Sample:
@@ -262,7 +264,7 @@ def laid_out(
         or ("," if delimiter != "," and _commas(sample) else "."),
         names=tuple(names),
         units=units,
-        skipped=first,
+        skipped=lines.index(header) + 1 if header.startswith(LABVIEW) else first,  # rows with comments count
         header=header if header in plain else "",
         sample=sample,
         comments=comments,

@@ -18,7 +18,7 @@ from typing import Any
 _PAIR = re.compile(r"([^\W\d][^:=,;\t|]*)[:=]\s*([^\s:=,;|]+)(?:[,;|\s]+|$)")
 _NUMBER = re.compile(r"[+-]?\.?\d")
 _JSON = json.JSONDecoder(parse_float=str, parse_int=str, parse_constant=str)
-_LOOKED_AT = 500
+_LOOKED_AT = 100
 """Lines at the start, by which it is judged."""
 
 
@@ -52,12 +52,12 @@ def _flatten(name: str, value: Any, said: dict[str, str]) -> None:
 
 def names_of_records(start: str) -> list[str]:
     """The names in lines of records; none where the lines at the start of a file are others."""
-    lines = [line for line in start.splitlines()[:-1] if line.strip()][:_LOOKED_AT]
-    found = [said for line in lines if (said := record_of(line))]
-    alike = len({tuple(said) for said in found})
-    if len(found) < 2 or len(found) < 0.8 * len(lines) or 2 * alike > len(found):
+    lines = [line for line in start.splitlines()[:-1] if line.strip()]
+    first = [said for line in lines[:_LOOKED_AT] if (said := record_of(line))]
+    alike = len({tuple(said) for said in first})
+    if len(first) < 2 or len(first) < 0.8 * len(lines[:_LOOKED_AT]) or 2 * alike > len(first):
         return []
-    return list(dict.fromkeys(name for said in found for name in said))
+    return list(dict.fromkeys(name for line in lines for name in record_of(line) or ()))
 
 
 class Records(AbstractContextManager["Records"]):
