@@ -52,6 +52,8 @@ def _flatten(name: str, value: Any, said: dict[str, str]) -> None:
 
 def names_of_records(start: str) -> list[str]:
     """The names in lines of records; none where the lines at the start of a file are others."""
+    if ":" not in start and "=" not in start:  # as in most tables
+        return []
     lines = [line for line in start.splitlines()[:-1] if line.strip()]
     first = [said for line in lines[:_LOOKED_AT] if (said := record_of(line))]
     alike = len({tuple(said) for said in first})
