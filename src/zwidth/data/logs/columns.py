@@ -60,6 +60,8 @@ def meaning_of(
         motion = table.attributes["motion"]
     if resolution is None and counts_per_turn is None:
         resolution = _resolution(table)
+    if "time" in columns and stated["time"] is None and not isinstance(scale.get("time"), str):
+        _ask_for_unit_of_time(table, columns["time"])
     turning = _turning(motion, stated, scale, resolution, counts_per_turn)
     step = _step(resolution, counts_per_turn, turning)
     factors = {}
@@ -75,8 +77,6 @@ def meaning_of(
             factors[quantity] = step if times is None else step * float(parse_number(times, "1", "scale"))
             continue
         where = f'{table.source}: {quantity} in column "{column}"'
-        if quantity == "time" and stated[quantity] is None and not isinstance(times, str):
-            _ask_for_unit_of_time(where, table, column)
         factors[quantity] = _factor(where, quantity, stated[quantity], times, turning)
     return Meaning(
         columns=columns, factors=factors, motion="rotary" if turning else "linear", resolution=step
@@ -215,7 +215,7 @@ def _factor(where: str, quantity: str, unit: str | None, scale: object, turning:
     return factor if scale is None else factor * float(parse_number(scale, "1", f"{where}: scale"))
 
 
-def _ask_for_unit_of_time(where: str, table: Table, column: str) -> NoReturn:
+def _ask_for_unit_of_time(table: Table, column: str) -> NoReturn:
     """With the one in which the stamps are 60 us to 60 ms apart, as recordings are."""
     steps = np.abs(np.diff(np.asarray(next(iter(table.read((column,))))[0], dtype=np.float64)))
     step = float(np.median(steps[steps > 0])) if steps.any() else 1.0
@@ -223,8 +223,8 @@ def _ask_for_unit_of_time(where: str, table: Table, column: str) -> NoReturn:
         unit for unit, most in (("s", 0.06), ("ms", 60), ("us", 6e4), ("ns", np.inf)) if step < most
     )
     raise InputError(
-        f"{where} has no unit; steps of {step:g} are most likely {likely}: state it with "
-        f'units={{"time": "{likely}"}}'
+        f'{table.source}: time in column "{column}" has no unit; steps of {step:g} are most likely {likely}: '
+        f'state it with units={{"time": "{likely}"}}'
     )
 
 
