@@ -217,8 +217,9 @@ def _factor(where: str, quantity: str, unit: str | None, scale: object, turning:
 
 def _ask_for_unit_of_time(table: Table, column: str) -> NoReturn:
     """With the one in which the stamps are 60 us to 60 ms apart, as recordings are."""
-    steps = np.abs(np.diff(np.asarray(next(iter(table.read((column,))))[0], dtype=np.float64)))
-    step = float(np.median(steps[steps > 0])) if steps.any() else 1.0
+    stamps = next(iter(table.read((column,))), (np.empty(0),))[0]
+    steps = np.abs(np.diff(np.asarray(stamps, dtype=np.float64)))
+    step = float(np.median(steps[steps > 0])) if (steps > 0).any() else 1.0
     likely = next(
         unit for unit, most in (("s", 0.06), ("ms", 60), ("us", 6e4), ("ns", np.inf)) if step < most
     )
