@@ -351,6 +351,8 @@ WORDS = {
     **dict.fromkeys(("radian", "radians"), "rad"),
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
     **dict.fromkeys(("newton", "newtons"), "N"),
+    **dict.fromkeys(("volt", "volts"), "V"),
+    **dict.fromkeys(("ampere", "amperes", "amp", "amps"), "A"),
     **dict.fromkeys(("turns", "revs"), "turn"),
 }
 """Units written out, wherever a value is read."""
@@ -375,4 +377,4 @@ def plain(text: str) -> str:
 def spelled(text: str) -> str:
     """A unit as `unit_of` reads it, where it is one: "Nm" is "N*m"."""
     bare = plain(text).strip()
-    return _ALIASES.get(bare, bare)
+    return _ALIASES.get(bare) or WORDS.get(bare.lower(), bare)

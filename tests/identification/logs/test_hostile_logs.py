@@ -281,6 +281,7 @@ RANDOM = np.random.default_rng(1).bytes(20000)
         (GOOD.replace("_mm", " [kg]").encode(), "not a length"),
         (GOOD.replace("force_N", "force [N*m]").encode(), "not a force"),
         (GOOD.replace("0.5,", "0.5,oops ", 1).encode(), "near line 502"),
+        (GOOD.replace("\n", "\noops", 1).encode(), "near line 2"),
         ((GOOD * 9 + "1,2\n" * 3000).encode(), "another number of columns"),
         (b"time_s,position_mm,force_N\n" + b"0.1,far,2\n" * 50, '"position_mm" holds text, such as "far"'),
         (b"time_s,position_mm\n0,1\n", "fewer than two rows"),

@@ -56,6 +56,10 @@ TABLES: dict[str, list[Sequence[object]]] = {
         *ROWS,
         *[("Mittel", 1.7, 3.9), ("Probe trocken",)],
     ],
+    "numbers beside names and units": [
+        *[("spec A",) * 3, (*NAMES, None, None, 20, 80), (*UNITS, None, None, 0.13, 79.4)],
+        *ROWS,
+    ],
     "results above the raw data": [
         *[("Results Table 1",), ("", "Maximum Load", "Extension at Maximum Load"), ("", "(N)", "(mm)")],
         *[(k, 4.4, 4.0) for k in range(5)],

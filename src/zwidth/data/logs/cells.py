@@ -18,6 +18,7 @@ from typing import IO
 import numpy as np
 import pyarrow as pa
 
+from zwidth.data.logs.records import Records, names_of_records
 from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded
 
@@ -166,10 +167,13 @@ _SIGNS = (("\u2212", "-"), ("\u00a0", " "), ("\u202f", " "), ("\ufeff", ""))
 """Signs that mean the same as those of ASCII: a minus, spaces, a mark at the start of a file."""
 
 
-def opened_text(path: Path) -> IO[bytes] | Bounded:
-    """The bytes of a file; UTF-16, and lines that end in a carriage return alone, are turned over whole."""
+def opened_text(path: Path) -> IO[bytes] | Bounded | Records:
+    """The bytes of a file; UTF-16, and lines that end in a carriage return alone, are turned over whole, and
+    lines that name each number are rows of a table."""
     with _opened(path) as file:
         start = file.read(SNIFFED)
+    if names := names_of_records(_decoded(start)):
+        return Records(_opened(path), names)
     encoding = _wide(start)
     bare_returns = b"\r" in start and b"\n" not in start
     if encoding is None and not bare_returns:

@@ -10,7 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
-from typing import Any
+from typing import Any, NoReturn
+
+import numpy as np
 
 from zwidth.data.logs.table import Motion, Table, listed
 from zwidth.errors import InputError
@@ -58,7 +60,9 @@ def meaning_of(
         motion = table.attributes["motion"]
     if resolution is None and counts_per_turn is None:
         resolution = _resolution(table)
-    turning = _turning(motion, stated["position"], scale.get("position"), resolution, counts_per_turn)
+    if "time" in columns and stated["time"] is None and not isinstance(scale.get("time"), str):
+        _ask_for_unit_of_time(table, columns["time"])
+    turning = _turning(motion, stated, scale, resolution, counts_per_turn)
     step = _step(resolution, counts_per_turn, turning)
     factors = {}
     for quantity, column in columns.items():
@@ -149,16 +153,16 @@ def _is_counts(unit: str | None) -> bool:
 
 
 def _turning(
-    motion: str | None, unit: str | None, scale: object, resolution: object, counts_per_turn: object
+    motion: str | None,
+    stated: Mapping[str, str | None],
+    scale: Mapping[str, object],
+    resolution: object,
+    counts_per_turn: object,
 ) -> bool:
-    """True for a rotary device: as stated, or as the unit of its position says."""
+    """True for a rotary device: as stated, or as the unit of its position says, or else that of a force."""
     if motion not in (None, "linear", "rotary"):
         raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
-    kinds = []
-    if isinstance(scale, str):
-        kinds.append(_scale(scale, "scale of the position")[1].dimension)
-    elif unit is not None and not _is_counts(unit):
-        kinds.append(unit_of(unit).dimension)
+    kinds = [_dimension("position", stated, scale)]
     if isinstance(resolution, str):
         kinds.append(unit_of(plain(resolution).lstrip("+-0123456789.eE/ ")).dimension)
     if counts_per_turn is not None:
@@ -172,7 +176,20 @@ def _turning(
             "the position is a length in one place and an angle in another: check motion, the unit of the "
             "position, resolution and counts_per_turn"
         )
-    return seen.pop() if seen else False
+    return seen.pop() if seen else _TORQUE in {_dimension(quantity, stated, scale) for quantity in stated}
+
+
+def _dimension(
+    quantity: str, stated: Mapping[str, str | None], scale: Mapping[str, object]
+) -> Dimension | None:
+    """Of the numbers of a column as they are meant; None where nobody says."""
+    given, unit = scale.get(quantity), stated.get(quantity)
+    if isinstance(given, str):
+        return _scale(given, f"scale of the {quantity}")[1].dimension
+    try:
+        return None if unit is None else measured_in(unit).dimension
+    except InputError:  # refused where it is used
+        return None
 
 
 def _step(resolution: object, counts_per_turn: object, turning: bool) -> float | None:
@@ -198,6 +215,20 @@ def _factor(where: str, quantity: str, unit: str | None, scale: object, turning:
     return factor if scale is None else factor * float(parse_number(scale, "1", f"{where}: scale"))
 
 
+def _ask_for_unit_of_time(table: Table, column: str) -> NoReturn:
+    """With the one in which the stamps are 60 us to 60 ms apart, as recordings are."""
+    stamps = next(iter(table.read((column,))), (np.empty(0),))[0]
+    steps = np.abs(np.diff(np.asarray(stamps, dtype=np.float64)))
+    step = float(np.median(steps[steps > 0])) if (steps > 0).any() else 1.0
+    likely = next(
+        unit for unit, most in (("s", 0.06), ("ms", 60), ("us", 6e4), ("ns", np.inf)) if step < most
+    )
+    raise InputError(
+        f'{table.source}: time in column "{column}" has no unit; steps of {step:g} are most likely {likely}: '
+        f'state it with units={{"time": "{likely}"}}'
+    )
+
+
 def _wanted(quantity: str, turning: bool) -> tuple[Dimension, str]:
     """The dimension of a quantity, and what it is in words."""
     if quantity == "time":
@@ -221,19 +252,20 @@ def _by_scale(where: str, unit: str | None, scale: str, wanted: Dimension, kind:
 
 def _by_unit(where: str, quantity: str, unit: str | None, wanted: Dimension, kind: str) -> float:
     if unit is None:
-        turns = "joint" in where
-        example = {"time": "ms", "position": "rad" if turns else "mm"}.get(quantity, "N*m" if turns else "N")
+        turns = "joint" in where or wanted in (_ANGLE, _TORQUE)
+        example = ("rad" if turns else "mm") if quantity == "position" else "N*m" if turns else "N"
         raise InputError(f'{where} has no unit; state it with units={{"{quantity}": "{example}"}}')
+    force = "N*m" if wanted == _TORQUE else "N"
     if _is_counts(unit):
         raise InputError(
-            f'{where} is in counts; say what a count is with scale={{"{quantity}": "0.01 N/count"}}'
+            f'{where} is in counts; say what a count is with scale={{"{quantity}": "0.01 {force}/count"}}'
         )
     known = _known(unit, where)
     if known.dimension[4]:
         note(unit)  # the answers are in the angle of the log
     if known.dimension != wanted:
         electric = known.dimension in (unit_of("V").dimension, unit_of("A").dimension)
-        hint = f'; say what it stands for with scale={{"{quantity}": "2 N/{unit}"}}' if electric else ""
+        hint = f'; say what it stands for with scale={{"{quantity}": "2 {force}/{unit}"}}' if electric else ""
         raise InputError(f"{where} is in {unit}, which is not {kind}{hint}")
     return _si(known)
 
@@ -323,6 +355,8 @@ def recognise(
         if quantity in found or quantity in (chosen or {}):
             continue
         candidates = _candidates(quantity, [c for c in columns if c not in found.values()])
+        if not candidates and quantity == "time":
+            candidates = _first_in_seconds(columns, found)
         if len(candidates) > 1:
             raise InputError(
                 f"{source}: {listed(candidates)} may each be the {quantity}; "
@@ -408,6 +442,16 @@ def _candidates(quantity: str, columns: list[str]) -> list[str]:
         if found:
             return found
     return []
+
+
+def _first_in_seconds(columns: Mapping[str, Any], found: Mapping[str, str]) -> list[str]:
+    """The first column, where the file says that it is in a unit of time, however it is called."""
+    column, unit = next(iter(columns.items()), ("", None))
+    try:
+        known = isinstance(unit, str) and measured_in(spelled(unit)).dimension == _TIME
+    except InputError:
+        known = False
+    return [column] if known and column not in found.values() else []
 
 
 def check_quantity(what: str, name: str) -> None:

@@ -93,6 +93,14 @@ def _kind(fields: list[str]) -> Kind:
     return kind if 2 * shares[kind] > len(values) else "text"
 
 
+_OF_A_BUS = re.compile(
+    r"^\s*(?:\([^()]+\)\s+)?\w+\s+[0-9A-F]{3,8}(?:##?[0-9A-FR]|\s+\[\d+\]\s)"  # candump
+    r"|^Time ?Stamp[,;]ID[,;]Extended|^timestamp,arbitration_id,"  # SavvyCAN, python-can
+    r"|^;\$FILEVERSION=|^base (?:hex|dec)\s+timestamps ",  # PCAN-View, Vector
+    re.MULTILINE,
+)
+
+
 @lru_cache(maxsize=2)
 def layout_of(text: str, source: str, whole: bool) -> Layout:
     """The layout of a text that starts so; `whole` says that this is all of it.
@@ -104,6 +112,12 @@ def layout_of(text: str, source: str, whole: bool) -> Layout:
         lines = lines[:-1]  # the last is cut in the middle
     if not text.strip():
         raise InputError(f"{source} is empty: {len(text)} characters, none of them a number")
+    if _OF_A_BUS.search(text[:4096]):
+        raise InputError(
+            f"{source} holds the frames of a CAN bus: the numbers stand in their bytes, and its DBC file, or "
+            "its maker, says where; decode it to a table with a column for each signal, such as SavvyCAN "
+            "writes by File, Save Decoded Frames"
+        )
     rows = [(k, line) for k, line in enumerate(lines) if line.strip() and not is_comment(line)]
     found = _most_columns(lines, rows)
     if found.first < 0:
@@ -196,7 +210,7 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
         return none
     common = max(set(sizes), key=sizes.count)
     fits = [good and len(fields) == common for fields, good in zip(found, numeric, strict=True)]
-    start = fits.index(True)
+    start = _start(found, fits)
     if sum(fits[start:]) < 0.8 * len(fits[start:]):
         return none
     first = rows[start][0]
@@ -208,6 +222,18 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
         if good and k < first + MOST_SAMPLED
     )
     return _Split(delimiter, common, first, found, tuple(sample))
+
+
+def _start(found: list[list[str]], fits: list[bool]) -> int:
+    """The first row of numbers; one that begins with a word, where most begin with a number, is a setting, or
+    names and units beside which somebody typed numbers, if words of names stand in it or below it."""
+    rows = [k for k, good in enumerate(fits) if good]
+    first = [found[k][0] for k in rows]
+    if are_plain(first) or 2 * sum(map(is_value, first)) <= len(rows):
+        return rows[0]
+    above = range(rows[list(map(_is_text, first)).index(False)])
+    names = [k for k in above if sum(map(_is_text, found[k])) > 1]
+    return next(k for k in rows if k > max(names, default=-1))
 
 
 def sample_of(lines: list[str], delimiter: str, columns: int, first: int) -> Sample:
@@ -227,7 +253,7 @@ def laid_out(
     above = [line for line in lines[:first] if line.strip()]
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]
-    header, names, units_line = _header(plain, comments, delimiter, columns, _empty_at_end(sample, columns))
+    header, names, units_line = _header(plain, comments, delimiter, _filled(sample, columns))
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
@@ -238,7 +264,7 @@ def laid_out(
         or ("," if delimiter != "," and _commas(sample) else "."),
         names=tuple(names),
         units=units,
-        skipped=first,
+        skipped=lines.index(header) + 1 if header.startswith(LABVIEW) else first,  # rows with comments count
         header=header if header in plain else "",
         sample=sample,
         comments=comments,
@@ -249,10 +275,9 @@ def _commas(sample: Sample) -> bool:
     return any("," in field for fields in sample for field in fields)
 
 
-def _empty_at_end(sample: Sample, columns: int) -> int:
-    """Columns at the end in which nothing stands: of delimiters that end each row."""
-    filled = [k for row in sample for k, field in enumerate(row) if field]
-    return columns - 1 - max(filled, default=columns - 1)
+def _filled(sample: Sample, columns: int) -> list[bool]:
+    """Of each column whether anything stands in it."""
+    return [any(row[k] for row in sample) for k in range(columns)]
 
 
 def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
@@ -265,21 +290,29 @@ def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
 
 
 def _header(
-    plain: list[str], comments: tuple[str, ...], delimiter: str, columns: int, empty: int
+    plain: list[str], comments: tuple[str, ...], delimiter: str, filled: list[bool]
 ) -> tuple[str, list[str], list[str]]:
-    """The line with the names, its fields, and the fields of the line of units below it."""
+    """The line with the names, its fields, and the fields of the line of units below it.
+
+    A number above a column in which nothing stands is a note.  Delimiters that end each row may be missing.
+    """
+    if head := next((line for line in reversed(plain) if line.startswith(LABVIEW + delimiter)), ""):
+        return _of_labview(head, plain, delimiter, filled)
+    columns = len(filled)
+    fewest = columns - filled[::-1].index(True)
 
     def fields_of(line: str) -> list[str] | None:
         for fields in _ways_to_split(line, delimiter):
             bare = fields[:columns] if not any(fields[columns:]) else fields
-            if columns - empty <= len(bare) <= columns:
-                return bare + [""] * (columns - len(bare))
+            if fewest <= len(bare) <= columns:
+                bare = bare + [""] * (columns - len(bare))
+                return ["" if is_value(f) and not k else f for f, k in zip(bare, filled, strict=True)]
         return None
 
     if plain and (below := fields_of(plain[-1])) is not None:
         names = fields_of(plain[-2]) if len(plain) > 1 else None
-        if names is not None and any(below) and all(is_unit(field.strip("[]() -")) for field in below):
-            return plain[-2], names, below
+        if names is not None and (units := _units(below, names)):
+            return plain[-2], names, units
         return plain[-1], below, []
     for other in _DELIMITERS[:-1]:
         if plain and len(split(plain[-1], other)) == columns > 1:
@@ -289,6 +322,38 @@ def _header(
         if found is not None and not line.startswith("# {"):
             return line, found, []
     return "", [], []
+
+
+LABVIEW = "X_Value"
+"""How the names in a LabVIEW measurement begin."""
+
+
+def _of_labview(
+    head: str, plain: list[str], delimiter: str, filled: list[bool]
+) -> tuple[str, list[str], list[str]]:
+    """The same of a measurement that LabVIEW wrote: units stand above the names by the word Y_Unit_Label, and
+    Comment is a name where no row has a comment."""
+    said = {(fields := split(line, delimiter))[0]: fields[1:] for line in plain}
+    labels = iter(said.get("Y_Unit_Label", []))
+    of_x = "s" if "Time" in said.get("X_Dimension", ["Time"]) else ""
+    names = [*split(head, delimiter), *[""] * len(filled)][: len(filled)]
+    units = [
+        (of_x if full else "") if name == LABVIEW else next(labels, "")
+        for name, full in zip(names, filled, strict=True)
+    ]
+    return head, names, [unit if is_unit(unit) else "" for unit in units]
+
+
+def _units(below: list[str], names: list[str]) -> list[str]:
+    """Of the line above the numbers, if it holds nothing else; the first may be a word, "Sequence", where
+    each has its name above."""
+    known = [is_unit(field.strip("[]() -")) for field in below]
+    if not (any(below) and all(known[1:])):
+        return []
+    if known[0]:
+        return below
+    named = all(name or not field for name, field in zip(names, below, strict=True))
+    return ["", *below[1:]] if named and any(below[1:]) else []
 
 
 def _ways_to_split(line: str, delimiter: str) -> list[list[str]]:

@@ -248,8 +248,10 @@ def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, 
     rows = recording.rows(tally)
     start = next(rows, None)
     if start is None or start.time.size < 2:
+        names = meaning.columns.values()
         raise InputError(
-            f"{table.source} holds fewer than two rows with numbers in the columns that are used"
+            f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; where "
+            "topics are written in turn, give each row the newest of each, in pandas with table.ffill()"
         )
     clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
     cutter = Cutter(clock, table.source, tally)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from zwidth.data.logs.columns import QUANTITIES, meaning_of, recognise
 from zwidth.data.logs.log import Log, contents, stated_period
-from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets
+from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets, with_whole_stamps
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
 
@@ -84,7 +84,8 @@ def opened(
     Of a workbook it is that of the sheet, or of the one sheet that has these columns and a position.
     """
     with readable(str(path)):
-        yield _one_sheet(table_of_file(Path(path), sheet), columns or {})
+        table = _one_sheet(table_of_file(Path(path), sheet), columns or {})
+        yield with_whole_stamps(table, (columns or {}).values())
 
 
 def _one_sheet(table: Table, columns: Mapping[str, str | None]) -> Table:

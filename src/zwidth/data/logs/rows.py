@@ -158,7 +158,7 @@ def _times(values: NDArray[Any], factor: float) -> Array:
 def _origin(time: NDArray[Any], factor: float) -> Any:
     """What to subtract from stamps: 0, or the first of them if they are dates."""
     if time.dtype.kind == "M":
-        return time[0]
+        return next(iter(time[~np.isnat(time)]), np.datetime64(0, "ns"))
     finite = time[np.isfinite(time)] if time.dtype.kind == "f" else time
     first = finite[0] if finite.size else time.dtype.type(0)
     return first if abs(float(first)) * factor > DATE else time.dtype.type(0)

@@ -98,9 +98,9 @@ def _refuse_formulas(book: Sheets, name: str, grid: Grid, columns: tuple[str, ..
 
 # Where the table stands on the sheet of a workbook: among titles, settings, results and notes.
 #
-# A row with names, in which two cells or more hold text and none a number, stands above each table.  The
-# longest table is taken; those below it under the same names go on with it, as when tests are put under each
-# other.  What else is a table of its own is left out, and said.
+# A row with names, in which two cells or more hold text and none a number of a column, stands above each
+# table.  The longest table is taken; those below it under the same names go on with it, as when tests are put
+# under each other.  What else is a table of its own is left out, and said.
 
 
 FEWEST_ROWS = 3
@@ -127,7 +127,7 @@ class _Row(NamedTuple):
 def grid_of(rows: list[list[str]], source: str) -> Grid | None:
     """The longest table of a sheet; None where there is none."""
     kinds = [_kinds(row) for row in rows]
-    heads = [k for k, kind in enumerate(kinds) if not kind.values and kind.texts >= _FEWEST_NAMES]
+    heads = [k for k, kind in enumerate(kinds) if kind.texts >= _FEWEST_NAMES and _names(rows, kinds, k)]
     blocks = [
         (before + 1, end)
         for before, end in pairwise([-1, *heads, len(rows)])
@@ -148,6 +148,17 @@ def grid_of(rows: list[list[str]], source: str) -> Grid | None:
     left = [(start + 1, _end(kinds, start, end)) for start, end in blocks if (start, end) not in own]
     body = [lines[k] if k in inside else "" for k in range(first, len(rows))]
     return Grid(lines[:first] + body, layout, _rows(kinds, *main), left)
+
+
+def _names(rows: list[list[str]], kinds: list[_Row], k: int) -> bool:
+    """True where a row with texts holds no number, or only such as stand above nothing: they were typed
+    beside the names."""
+    if not kinds[k].values:
+        return True
+    typed = [c for c, cell in enumerate(rows[k]) if is_value(cell)]
+    near = zip(rows[k + 1 : k + 20], kinds[k + 1 :], strict=False)
+    below = [row for row, kind in near if kind.texts < _FEWEST_NAMES]
+    return bool(below) and not any(row[c] for row in below for c in typed if c < len(row))
 
 
 def _kinds(row: list[str]) -> _Row:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -98,6 +99,57 @@ def listed(names: Mapping[str, Any] | list[str]) -> str:
     shown = [f'"{name}"' for name in list(names)[:30]]
     more = len(names) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more > 0 else "")
+
+
+_SECONDS = re.compile(r"((.*)[._/ ]|)(?:secs?|seconds)", re.IGNORECASE)
+_RESTS = {"nanosec": 1, "nanosecond": 1, "nsec": 1, "microsec": 1000, "microsecond": 1000, "usec": 1000}
+"""[ns] Of what stands beside whole seconds."""
+
+
+def with_whole_stamps(table: Table, chosen: Collection[str | None]) -> Table:
+    """The table in which whole seconds and the rest of one, as ROS and C write a time, are one column; where
+    one of the two is chosen by its name they stay as they are."""
+    for seconds in table.units:
+        if found := _SECONDS.fullmatch(seconds):
+            start, before = found[1], found[2] or ""
+            units = {n: _RESTS.get(n.removeprefix(start).lower().rstrip("s")) for n in table.units}
+            rests = [n for n, unit in units.items() if unit and n.startswith(start)]
+            known = re.search(r"(stamp|time|\bt)$", before, re.IGNORECASE)
+            name = before if known else f"{before}.stamp".lstrip(".")
+            if len(rests) == 1 and name not in units and not {seconds, *rests} & set(chosen):
+                return _joined(table, name, seconds, rests[0], units[rests[0]] or 1)
+    return table
+
+
+def _joined(table: Table, joined: str, seconds: str, rest: str, unit: int) -> Table:
+    def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+        wanted = {part: None for n in names for part in ((seconds, rest) if n == joined else (n,))}
+        for piece in table.read((*wanted,)):
+            columns = dict(zip(wanted, piece, strict=True))
+            if joined in names:
+                columns[joined] = _stamps(columns[seconds], columns[rest] * unit)
+            yield tuple(columns[name] for name in names)
+
+    def _stamps(whole: Values, part: Values) -> Values:
+        """Nanoseconds; "not a time" where either number is missing."""
+        known = np.isfinite(whole) & np.isfinite(part)
+        if (np.abs(part[known]) >= 1e9).any():
+            raise InputError(
+                f'{table.source}: "{rest}" beside "{seconds}" is more than a second, and no rest of one; say '
+                f'which is the time with columns={{"time": "{seconds}"}}'
+            )
+        stamps = np.full(whole.size, np.datetime64("NaT", "ns"))
+        stamps[known] = (whole[known].astype(np.int64) * 10**9 + part[known].astype(np.int64)).astype(
+            "M8[ns]"
+        )
+        return stamps
+
+    units = {
+        joined if n == seconds else n: "ns" if n == seconds else u
+        for n, u in table.units.items()
+        if n != rest
+    }
+    return replace(table, units=units, read=read)
 
 
 BLOCK_SIZE = 2**18

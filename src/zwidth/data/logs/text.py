@@ -25,8 +25,8 @@ from zwidth.data.logs.cells import (
     stamps_of,
     text_of,
 )
-from zwidth.data.logs.layout import Layout, is_comment, layout_of, split
-from zwidth.data.logs.table import Finding, Table, Values
+from zwidth.data.logs.layout import LABVIEW, Layout, is_comment, layout_of, split
+from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
 _PIECE = 2**23
@@ -45,6 +45,7 @@ def text_table(path: Path) -> Table:
         whole = not file.read(1)
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
+    _refuse_long_table(layout, path)
     attributes = _attributes(layout)
     table = Table(
         source=str(path),
@@ -69,6 +70,23 @@ def _refuse_one_column(layout: Layout, path: Path) -> None:
                     f"{path}: the header splits into {fields} names at each {name}, but the rows do not; "
                     "use one delimiter throughout"
                 )
+
+
+_OF_NAMES = "topic name signal channel variable series key field metric label parameter"
+
+
+def _refuse_long_table(layout: Layout, path: Path) -> None:
+    """One in which a column names the quantity whose number stands in another."""
+    bare = {name.strip("_ ").lower(): name for name in layout.names}
+    name = next((bare[word] for word in _OF_NAMES.split() if word in bare), "")
+    if name and "value" in bare and layout.kind(name) == "text":
+        found = list(dict.fromkeys(filter(None, layout.fields(name))))
+        if len(found) > 1:
+            raise InputError(
+                f'{path} is a long table: its column "{bare["value"]}" holds {len(found)} quantities, '
+                f'{listed(found)}, by "{name}"; make a column of each, in pandas with '
+                f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{bare["value"]}")'
+            )
 
 
 def _attributes(layout: Layout) -> dict[str, Any]:
@@ -218,6 +236,8 @@ class Parser:
         for sign in (b"#", b"%", b"//"):
             if sign[:1] in lines:  # one byte is searched for far quicker than two
                 lines = re.sub(rb"(?m)^" + sign + rb"[^\n]*\n?", b"", lines)
+        if self.layout.header.startswith(LABVIEW):  # which may write its head again for each segment
+            lines = re.sub(rb"(?m)^(?:(?!X_Value|NaN|Inf)[A-Z*][^\n]*|[\t\r]*)\n", b"", lines)
         if self._letter and self._letter in lines:
             pattern = rb"(?m)^" + re.escape(self.layout.header.encode()) + rb"\r?\n"
             lines, count = re.subn(pattern, b"", lines)
