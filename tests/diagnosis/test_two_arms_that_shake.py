@@ -140,7 +140,7 @@ def test_a_bag_with_the_joint_states_of_both_arms(storage, shaken, tmp_path):
     found = zw.diagnose_pair(tmp_path / "bag", units=UNITS)
     assert found.cause == "link delay"
     topic = names["leader"]
-    leader = {"position": f"{topic}.position[0]", "actuator_force": f"{topic}.effort[0]"}
+    leader = {"position": f"{topic}.position[elbow]", "actuator_force": f"{topic}.effort[elbow]"}
     one = zw.diagnose(tmp_path / "bag", columns=leader, units=UNITS)
     assert one.frequency == pytest.approx(found.frequency, rel=0.02)
 

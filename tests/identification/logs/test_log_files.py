@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import bz2
 import gzip
+import json
 import sys
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -226,16 +231,151 @@ def test_rosbags(storage, recording, tmp_path):
     log = zw.read_log(path, **asked)
     assert_same(log, recording)
     assert {"dates", "two topics"} <= {f.kind for f in log.findings}
-    with pytest.raises(zw.InputError, match=r"joint_states.position\[0\].*has no unit"):
+    with pytest.raises(zw.InputError, match=r"joint_states.position\[stylus\].*has no unit"):
         zw.read_log(path)
     (file,) = [p for p in path.iterdir() if p.suffix in (".mcap", ".db3")]
     assert_same(zw.read_log(file, **asked), recording)
 
 
+JOINTS = """std_msgs/Header header
+string[] name
+float64[] position
+float64[] effort
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+STATE = """string[] joint_names
+control_msgs/InterfaceValue[] interface_values
+================================================================================
+MSG: control_msgs/InterfaceValue
+string[] interface_names
+float64[] values
+"""
+
+
+@cache
+def store_of(kind: str) -> tuple[str, Any]:
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.EMPTY)
+    name, text = {"joints": ("a/msg/Joints", JOINTS), "state": ("a/msg/State", STATE)}[kind]
+    store.register(get_types_from_msg(text, name))
+    return name, store
+
+
+def of_two_joints(time: float, shoulder: float, elbow: float, swapped: bool, kind: str) -> bytes:
+    """A message of two joints: one type of ROS, another whose lists are in lists, or JSON."""
+    names, both = ["shoulder", "elbow"], [[shoulder, 2 * shoulder], [elbow, 3 * elbow]]
+    if swapped:
+        names, both = names[::-1], both[::-1]
+    stamp = divmod(1_700_000_000_000_000_000 + round(time * 1e9), 10**9)
+    if kind == "json":
+        about = {"header": {"stamp": {"sec": stamp[0], "nsec": stamp[1]}}, "names": names}
+        return json.dumps({**about, "state": {"position": [x for x, _ in both]}, "on": True}).encode()
+    name, store = store_of(kind)
+    types = store.types
+    if kind == "joints":
+        header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](*stamp), "")
+        said = types[name](header, names, *np.array(both).T.copy())
+    else:
+        of_one = types["control_msgs/msg/InterfaceValue"]
+        said = types[name](names, [of_one(["position", "effort"], np.array(values)) for values in both])
+    return bytes(store.serialize_cdr(said, name))
+
+
+def mcap_of(path: Path, kind: str, messages: Iterable[tuple[float, bytes]], **options: Any) -> Path:
+    """A file in one topic, as another program writes it."""
+    from mcap.writer import Writer
+
+    with open(path, "wb") as file:
+        writer = Writer(file, **{"chunk_size": 4000, **options})
+        writer.start(profile="" if kind == "json" else "ros2")
+        name, form, text = {
+            "joints": ("a/msg/Joints", "ros2msg", JOINTS),
+            "state": ("a/msg/State", "ros2msg", STATE),
+            "json": ("State", "jsonschema", "{}"),
+        }[kind]
+        schema = writer.register_schema(name, form, text.encode())
+        channel = writer.register_channel("/arm", "json" if kind == "json" else "cdr", schema)
+        for time, data in messages:
+            stamp = 1_700_000_000_000_000_000 + round(time * 1e9)
+            writer.add_message(channel, stamp, data, stamp)
+        writer.finish()
+    return path
+
+
+@pytest.mark.parametrize("chunked", [True, False])
+@pytest.mark.parametrize(
+    ("kind", "column"),
+    [
+        ("joints", "/arm.position[{}]"),
+        ("state", "/arm.interface_values[{}].values[position]"),
+        ("json", "/arm.state.position[{}]"),
+    ],
+)
+def test_what_a_message_names_is_known_by_its_name(kind, column, chunked, recording, tmp_path):
+    """Two joints change places at every third message, and every seventh message is of another one."""
+    pytest.importorskip("rosbags")
+    messages = []
+    for k, (t, x, f) in enumerate(zip(recording.time[:900], *recording[1:3], strict=False)):
+        messages.append((t, of_two_joints(t, x, f, k % 3 == 0, kind)))
+        if k % 7 == 0:
+            other = messages[-1][1].replace(b"shoulder", b"gripper_")
+            messages.append((t + 1e-4, other))
+    path = mcap_of(tmp_path / "log.mcap", kind, messages, use_chunking=chunked)
+    units = {"position": "m"}
+    log = zw.read_log(path, columns={"position": column.format("shoulder"), "hand_force": None}, units=units)
+    (block,) = log.blocks()
+    assert np.abs(block.position - recording.position[:900]).max() < 1e-15
+    said = {finding.kind: finding for finding in log.findings}
+    assert (said["messages left out"].samples, "cut" in said) == (129, False)
+    assert '"elbow", "gripper_"' in said["names left out"].text
+    with pytest.raises(zw.InputError, match=r"no column.*\[shoulder\]"):
+        zw.read_log(path, columns={"position": column.format("0")}, units=units)
+
+
+def test_of_a_file_that_was_cut_its_whole_pieces_are_read(recording, tmp_path):
+    """Cut anywhere, or damaged in one place."""
+    pytest.importorskip("rosbags")
+    rows = list(zip(recording.time[:900], *recording[1:3], strict=False))
+    path = mcap_of(
+        tmp_path / "log.mcap", "joints", ((t, of_two_joints(t, x, f, False, "joints")) for t, x, f in rows)
+    )
+    whole, (low, high) = path.read_bytes(), (0, 0)
+    asked = {
+        "columns": {"position": "/arm.position[shoulder]", "hand_force": None},
+        "units": {"position": "m"},
+    }
+    for end in range(300, len(whole), len(whole) // 17):
+        path.write_bytes(whole[:end])
+        if end < 2 * 600:  # less than a chunk
+            with pytest.raises(zw.InputError, match="ends in the middle"):
+                zw.read_log(path, **asked)
+            low += 1
+            continue
+        log = zw.read_log(path, **asked)
+        high += log.samples < 900
+        assert ("cut" in {f.kind for f in log.findings}) == (log.samples < 900)
+        blocks = list(log.blocks())
+        assert (np.concatenate([b.position for b in blocks]) == recording.position[: log.samples]).all()
+    assert low >= 1 <= 8 <= high
+    middle = len(whole) // 3
+    path.write_bytes(whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :])
+    log = zw.read_log(path, **asked)
+    assert log.runs == 2
+    assert any("the file is damaged" in f.text for f in log.findings)
+
+
 def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
-    path = tmp_path / "log.mcap"
-    path.write_bytes(b"\x89MCAP0\r\n" + bytes(100) + b"\x89MCAP0\r\n")
+    path = mcap_of(tmp_path / "log.mcap", "joints", [(0.0, b"")])
+    for module in ("rosbags.highlevel", "rosbags.typesys"):
+        monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
         zw.read_log(path)
 
