@@ -151,7 +151,8 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
     slider = zw.Device(mass=0.1, damping=1, coulomb_friction=0, sample_period=PERIOD)
     path, data = written(tmp_path / "arms.csv", shaken), tmp_path / "set" / "data" / "chunk-000"
     data.mkdir(parents=True)
-    (data / "episode_000000.parquet").write_bytes(b"PAR1")
+    for k in range(2):
+        (data / f"episode_00000{k}.parquet").write_bytes(b"PAR1")
     (tmp_path / "set" / "meta").mkdir()
     (tmp_path / "set" / "meta" / "info.json").write_text("{}", encoding="utf-8")
     for ask, message in (

@@ -154,6 +154,83 @@ def test_parquet_in_any_types(recording, tmp_path):
     assert zw.read_log(tmp_path / "null.parquet", resolution="22.4 um").samples == 3999
 
 
+NANOSECONDS = (np.arange(4000) * 500_000 + 86_399 * 10**9).astype(np.int64)
+"""From a second before midnight on."""
+
+
+@pytest.mark.parametrize(
+    ("name", "stamps"),
+    [
+        ("elapsed", pa.array(NANOSECONDS).cast(pa.duration("ns"))),
+        ("elapsed", pa.array(NANOSECONDS // 1000).cast(pa.duration("us"))),
+        ("clock", pa.array(NANOSECONDS % (86400 * 10**9)).cast(pa.time64("ns"))),
+        ("clock", pa.array(NANOSECONDS // 1000 % (86400 * 10**6)).cast(pa.time64("us"))),
+        ("__index_level_0__", pa.array(NANOSECONDS).cast(pa.timestamp("ns"))),
+        ("__index_level_0__", pa.array(NANOSECONDS).cast(pa.duration("ns"))),
+        ("stamp", pa.array(NANOSECONDS.astype("datetime64[ns]").astype(str))),
+        ("stamp", pa.array([f"{text}Z" for text in NANOSECONDS.astype("datetime64[ns]").astype(str)])),
+        ("t_ns", pa.array([str(n) for n in NANOSECONDS])),
+    ],
+    ids=range(9),
+)
+def test_parquet_has_times_of_any_type(name, stamps, recording, tmp_path):
+    """Of a frame with an index that nobody named too; times of day go on past midnight."""
+    table = pa.table({"remark": ["x"] * 4000, "position_m": recording.position, name: stamps})
+    pq.write_table(table, tmp_path / "log.parquet", row_group_size=1500)
+    log = zw.read_log(tmp_path / "log.parquet")
+    (block,) = log.blocks()
+    assert np.abs(block.time - block.time[0] - recording.time).max() < 1e-10
+    assert log.sample_period == 5e-4
+    assert (block.position == recording.position).all()
+
+
+def lerobot_dataset(folder: Path, recording, about: dict[str, Any], names: Any) -> Path:
+    """Two episodes of one joint in one file."""
+    frame = np.tile(np.arange(500), 2)
+    state = np.stack([1e3 * recording.position[:1000], np.ones(1000)], axis=1).astype(np.float32)
+    columns = {
+        "observation.state": pa.FixedSizeListArray.from_arrays(state.ravel(), 2),
+        "timestamp": (frame / 30).astype(np.float32),
+        "frame_index": frame,
+        "episode_index": np.repeat([0, 1], 500),
+    }
+    (folder / "data" / "chunk-000").mkdir(parents=True)
+    (folder / "meta").mkdir()
+    features = {"observation.state": {"dtype": "float32", "shape": [2], "names": names}}
+    said = json.dumps({**about, "features": features})
+    (folder / "meta" / "info.json").write_text(said, encoding="utf-8")
+    pq.write_table(pa.table(columns), folder / "data" / "chunk-000" / "file-000.parquet")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("robot", "version", "names", "column", "likely"),
+    [
+        ("so101_follower", "v3.0", ["pan.pos", "gripper.pos"], "pan.pos", "degrees since LeRobot 0.4.4"),
+        ("so101_follower", "v2.1", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
+        ("so101_follower", "v3.0", ["pan.pos", "gripper.pos"], "gripper.pos", "mostly 0 … 100"),
+        ("so100", "v2.1", {"motors": ["main_pan", "main_gripper"]}, "main_pan", "mostly degrees"),
+        ("koch_follower", "v3.0", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
+        ("lekiwi", "v3.0", {"gripper.pos": 1, "pan.pos": 0}, "pan.pos", "since LeRobot 0.6.0"),
+        ("openarm_follower", "v3.0", ["joint_1.pos", "joint_2.pos"], "joint_1.pos", "mostly degrees"),
+        ("aloha", "v2.1", ["a"], "0", "use_degrees"),  # names that are not those of two numbers
+    ],
+)
+def test_a_lerobot_dataset_is_a_folder_with_names(robot, version, names, column, likely, recording, tmp_path):
+    about = {"robot_type": robot, "codebase_version": version}
+    folder = lerobot_dataset(tmp_path / "set", recording, about, names)
+    asked = {"columns": {"position": f"observation.state[{column}]"}}
+    with pytest.raises(zw.InputError, match=f"has no unit: .*{likely}.*state it"):
+        zw.read_log(folder, **asked)
+    if "gripper" in column:
+        return
+    log = zw.read_log(folder, **asked, units={"position": "deg"})
+    assert (log.runs, log.samples) == (2, 1000)
+    blocks = np.concatenate([block.position for block in log.blocks()])
+    assert np.abs(np.degrees(blocks) - 1e3 * recording.position[:1000]).max() < 1e-4
+    assert {"no clock", "episodes"} <= {finding.kind for finding in log.findings}
+
+
 def test_hdf5_groups_matrices_and_compounds(recording, tmp_path):
     path = tmp_path / "log.h5"
     matrix = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1)

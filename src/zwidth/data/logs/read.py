@@ -134,10 +134,14 @@ def log_of(
 def table_of_file(path: Path, sheet: str | None = None) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load."""
     if path.is_dir() and not (path / "metadata.yaml").is_file():
-        if (path / "meta" / "info.json").is_file() and (episodes := sorted(path.glob("data/*/*.parquet"))):
+        from zwidth.data.logs.parquet import dataset_files, parquet_table
+
+        files = dataset_files(path)
+        if len(files) == 1:
+            return parquet_table(files[0])
+        if files:
             raise InputError(
-                f"{path} is a LeRobot dataset with {len(episodes)} file(s); name one of them, such as "
-                f"{episodes[0]}"
+                f"{path} is a LeRobot dataset with {len(files)} files; name one of them, such as {files[0]}"
             )
         raise InputError(
             f"{path} is a directory, and no rosbag2: there is no metadata.yaml in it; name a file"
