@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,16 @@ def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(shaken, tmp_path)
     found = zw.diagnose_pair(tmp_path / "episode.parquet", columns=names, units=UNITS)
     assert found.cause == "link delay"
     assert found.frequency == pytest.approx(9.5, rel=0.02)
+    bare = {side: column for side, column in names.items() if "position" in side}
+    without = tmp_path / "without.parquet"
+    pq.write_table(pa.table({k: v for k, v in columns.items() if "effort" not in k}), without)
+    for path, count in ((without, 1), (tmp_path / "episode.parquet", 2)):
+        with pytest.raises(zw.InputError) as told:  # two efforts in a list: which of them is whose
+            zw.diagnose_pair(path, columns=bare, units=UNITS)
+        asked = re.findall(r'columns=\{"(\w+)"', str(told.value))
+        assert asked[0] == "leader_actuator_force"
+        assert not any(name.count("leader") + name.count("follower") > 1 for name in asked)
+        assert ("without efforts" in str(told.value)) == (count == 1)
     one = {"position": "action[2]", "actuator_force": "action.effort[0]"}
     with pytest.raises(zw.InputError, match=r"action\[0\]"):
         zw.diagnose(tmp_path / "episode.parquet", columns=one)
