@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bz2
 import gzip
+import io
 import json
 import sys
 from collections.abc import Iterable
@@ -279,6 +280,85 @@ def test_matlab_old_and_new(recording, tmp_path):
     with open(tmp_path / "v73.mat", "r+b") as raw:
         raw.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64")
     assert_same(zw.read_log(tmp_path / "v73.mat"), recording)
+
+
+def signals_of(recording, labels: tuple[str, str]) -> Any:
+    """What a scope of Simulink saves of two axes, as a structure with time."""
+    signals = np.empty((1, 2), dtype=[("values", "O"), ("dimensions", "O"), ("label", "O")])
+    for k, (values, label) in enumerate(
+        zip((1e3 * recording.position, recording.force), labels, strict=True)
+    ):
+        signals[0, k] = (values[:, np.newaxis], 1.0, label)
+    return {"scope": {"time": recording.time[:, np.newaxis], "signals": signals, "blockName": "a/Scope"}}
+
+
+@pytest.mark.parametrize(
+    ("labels", "names", "units"),
+    [
+        (("position (mm)", "hand force [N]"), (None, None), {}),
+        (("read x (mm)", "load (N)"), ("signals[0].read x (mm)", "signals[1].load (N)"), {}),
+        (("read x (mm)", "load (N)"), ("signals[0].values", "signals[1].values"), {}),
+        (("", "  "), ("signals[0].values", "signals[1].values"), {"position": "mm", "hand_force": "N"}),
+    ],
+)
+def test_signals_of_simulink_are_known_by_label_and_by_place(labels, names, units, recording, tmp_path):
+    scipy.io.savemat(tmp_path / "scope.mat", signals_of(recording, labels))
+    chosen = {q: f"scope.{n}" for q, n in zip(("position", "hand_force"), names, strict=True) if n}
+    assert_same(zw.read_log(tmp_path / "scope.mat", columns=chosen, units=units), recording)
+
+
+def test_lists_of_matlab_7_3_lead_to_their_numbers(recording, tmp_path):
+    with h5py.File(tmp_path / "scope.mat", "w") as file:
+        hidden = [file.create_dataset(f"#refs#/{k}", data=values) for k, values in enumerate(recording[:3])]
+        label = file.create_dataset("#refs#/label", data=np.frombuffer(b"position", np.uint8).astype("u2"))
+        label.attrs["MATLAB_class"] = np.bytes_("char")
+        leads = np.array([each.ref for each in (*hidden, label)], dtype=h5py.ref_dtype)
+        file["scope/values"] = leads[:, np.newaxis]
+    columns = by_name(*(f"scope/values[{k}]" for k in range(3)))
+    log = zw.read_log(tmp_path / "scope.mat", columns=columns, units={**UNITS, "position": "m"})
+    assert_same(log, recording)
+    with pytest.raises(zw.InputError, match=r"values\[2\]\"$"):  # no letters among the numbers
+        zw.read_log(tmp_path / "scope.mat")
+
+
+def test_what_scipy_says_of_a_file_is_a_finding(recording, tmp_path, recwarn):
+    whole = io.BytesIO()
+    scipy.io.savemat(whole, {"time_s": recording.time, "position_mm": 1e3 * recording.position})
+    again = io.BytesIO()
+    scipy.io.savemat(again, {"position_mm": 1e3 * recording.position})
+    (tmp_path / "log.mat").write_bytes(whole.getvalue() + again.getvalue()[128:])
+    log = zw.read_log(tmp_path / "log.mat")
+    assert_same(log, recording, force=False)
+    assert any('"position_mm"' in finding.text and "\n" not in finding.text for finding in log.findings)
+    assert len(recwarn) == 0
+
+
+def of_numpy(kind: str, path: Path, recording) -> dict[str, Any]:
+    """Write it; how to read it."""
+    stamps = (1e9 * recording.time).round().astype(np.int64)
+    columns = {
+        "t_s": recording.time,
+        "position_mm": 1e3 * recording.position,
+        "hand_force_N": recording.force,
+    }
+    if kind in ("archive", "compressed"):
+        {"archive": np.savez, "compressed": np.savez_compressed}[kind](path, **columns, rate=2000.0)
+    elif kind == "fields":
+        np.save(path, np.rec.fromarrays(list(columns.values()), names=",".join(columns)))
+    elif kind in ("rows", "columns"):
+        matrix = np.stack(list(columns.values()), axis=1)
+        np.save(path, matrix if kind == "rows" else np.asfortranarray(matrix.T))
+        return {"columns": by_name(*(f"data[{k}]" for k in range(3))), "units": UNITS}
+    else:
+        dates = stamps.astype("timedelta64[ns]") if kind == "durations" else stamps.astype("datetime64[ns]")
+        np.savez(path, **{**columns, "t_s": dates})
+    return {}
+
+
+@pytest.mark.parametrize("kind", ["archive", "compressed", "fields", "rows", "columns", "durations", "dates"])
+def test_files_of_numpy(kind, recording, tmp_path):
+    path = tmp_path / ("log.npy" if kind in ("fields", "rows", "columns") else "log.npz")
+    assert_same(zw.read_log(path, **of_numpy(kind, path, recording)), recording)
 
 
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])

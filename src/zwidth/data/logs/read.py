@@ -163,6 +163,10 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         from zwidth.data.logs.scientific import hdf5_table
 
         return hdf5_table(path)
+    if start[:6] == b"\x93NUMPY":
+        from zwidth.data.logs.scientific import numpy_table
+
+        return numpy_table(path)
     if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
         from zwidth.data.logs.scientific import matlab_table
 
@@ -194,6 +198,10 @@ def _in_archive(path: Path, sheet: str | None) -> Table:
         from zwidth.data.logs.workbook import workbook_table
 
         return workbook_table(path, sheet)
+    if kind == "arrays":
+        from zwidth.data.logs.scientific import numpy_table
+
+        return numpy_table(path)
     said = {
         "binary": "a binary workbook; save it as an ordinary .xlsx, or the sheet as CSV",
         "open document": "an OpenDocument spreadsheet; save it as .xlsx, or the sheet as CSV",
