@@ -434,7 +434,8 @@ def of_two_joints(time: float, shoulder: float, elbow: float, swapped: bool, kin
     stamp = divmod(1_700_000_000_000_000_000 + round(time * 1e9), 10**9)
     if kind == "json":
         about = {"header": {"stamp": {"sec": stamp[0], "nsec": stamp[1]}}, "names": names}
-        return json.dumps({**about, "state": {"position": [x for x, _ in both]}, "on": True}).encode()
+        state = {"position": [x for x, _ in both], "time_from_start": {"sec": 0, "nanosec": 5}}
+        return json.dumps({**about, "state": state, "on": True}).encode()
     name, store = store_of(kind)
     types = store.types
     if kind == "joints":

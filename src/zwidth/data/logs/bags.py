@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from array import array
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from io import BytesIO
 from itertools import islice
 from os import fstat
@@ -149,7 +150,7 @@ def _fields(
             break
     for name, value in members.items():
         here = (*where, name)
-        if name == "header" or (name in _STAMPS and _stamp({name: value})):
+        if name == "header" or _instant(value) is not None:
             continue
         if _is_number(value):
             yield name, None, here
@@ -179,19 +180,22 @@ def _are_names(value: Any) -> bool:
     return texts and len(set(value)) == len(value)
 
 
-_STAMPS = ("stamp", "timestamp")
+def _instant(value: Any) -> int | None:
+    """[ns] of a time in two numbers; None where it is none."""
+    members = _members(value)
+    parts = [members[k] for k in ("sec", "secs", "nanosec", "nsec", "nsecs") if k in members]
+    whole = len(parts) == len(members) == 2 and all(map(_is_number, parts))
+    return int(parts[0]) * 10**9 + int(parts[1]) if whole else None
 
 
 def _stamp(message: Any) -> int:
     """[ns] when a message says that it was sampled; 0 where it does not."""
+    with suppress(AttributeError):  # most messages of ROS, quickly
+        return int(message.header.stamp.sec * 10**9 + message.header.stamp.nanosec)
     members = _members(message)
-    for holder in (_members(members.get("header")), members):
-        for name in _STAMPS:
-            stamp = _members(holder.get(name))
-            parts = [stamp[k] for k in ("sec", "secs", "nanosec", "nsec", "nsecs") if k in stamp]
-            if len(parts) == 2 and all(map(_is_number, parts)):
-                return int(parts[0]) * 10**9 + int(parts[1])
-    return 0
+    holders = (_members(members.get("header")), members)
+    found = (_instant(holder.get(name)) for holder in holders for name in ("stamp", "timestamp"))
+    return next(filter(None, found), 0)
 
 
 def _read(
