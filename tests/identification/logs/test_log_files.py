@@ -426,11 +426,13 @@ def store_of(kind: str) -> tuple[str, Any]:
     return name, store
 
 
-def of_two_joints(time: float, shoulder: float, elbow: float, swapped: bool, kind: str) -> bytes:
+def of_two_joints(time: float, shoulder: float, elbow: float, swapped: bool | None, kind: str) -> bytes:
     """A message of two joints: one type of ROS, another whose lists are in lists, or JSON."""
     names, both = ["shoulder", "elbow"], [[shoulder, 2 * shoulder], [elbow, 3 * elbow]]
     if swapped:
         names, both = names[::-1], both[::-1]
+    if swapped is None:
+        names = []
     stamp = divmod(1_700_000_000_000_000_000 + round(time * 1e9), 10**9)
     if kind == "json":
         about = {"header": {"stamp": {"sec": stamp[0], "nsec": stamp[1]}}, "names": names}
@@ -480,7 +482,7 @@ def mcap_of(path: Path, kind: str, messages: Iterable[tuple[float, bytes]], **op
 def test_what_a_message_names_is_known_by_its_name(kind, column, chunked, recording, tmp_path):
     """Two joints change places at every third message, and every seventh message is of another one."""
     pytest.importorskip("rosbags")
-    messages = []
+    messages = [(-5e-4, of_two_joints(-5e-4, 1.0, 2.0, None, kind))]  # without names
     for k, (t, x, f) in enumerate(zip(recording.time[:900], *recording[1:3], strict=False)):
         messages.append((t, of_two_joints(t, x, f, k % 3 == 0, kind)))
         if k % 7 == 0:
@@ -492,10 +494,35 @@ def test_what_a_message_names_is_known_by_its_name(kind, column, chunked, record
     (block,) = log.blocks()
     assert np.abs(block.position - recording.position[:900]).max() < 1e-15
     said = {finding.kind: finding for finding in log.findings}
-    assert (said["messages left out"].samples, "cut" in said) == (129, False)
+    assert (said["messages left out"].samples, "cut" in said) == (130, False)
     assert '"elbow", "gripper_"' in said["names left out"].text
     with pytest.raises(zw.InputError, match=r"no column.*\[shoulder\]"):
         zw.read_log(path, columns={"position": column.format("0")}, units=units)
+
+
+def test_topics_that_cannot_be_read_do_not_hide_the_others(recording, tmp_path):
+    """Of another encoding, of a type that is none, or with bytes that are no message."""
+    pytest.importorskip("rosbags")
+    from mcap.writer import Writer
+
+    with open(tmp_path / "log.mcap", "wb") as file:
+        writer = Writer(file)
+        writer.start()
+        topics = {"/arm": ("json", "jsonschema", "{}"), "/odd": ("protobuf", "protobuf", "")}
+        topics |= {"/wrong": ("cdr", "ros2msg", "float64[ x"), "/bytes": ("cdr", "ros2msg", "float64 x")}
+        for topic, (encoding, form, text) in topics.items():
+            schema = writer.register_schema("a/msg/B", form, text.encode())
+            channel = writer.register_channel(topic, encoding, schema)
+            for t, x in zip(recording.time[:500], recording.position, strict=False):
+                data = json.dumps({"x_mm": 1e3 * x}).encode() if topic == "/arm" else b"x"
+                writer.add_message(channel, 10**18 + round(t * 1e9), data, 10**18)
+        writer.finish()
+    log = zw.read_log(tmp_path / "log.mcap")
+    assert (log.samples, log.sample_period) == (500, 5e-4)
+    said = " ".join(finding.text for finding in log.findings)
+    assert all(
+        topic in said for topic in ("/odd (protobuf)", "/wrong (cdr)", "the topic /bytes cannot be read")
+    )
 
 
 def test_of_a_file_that_was_cut_its_whole_pieces_are_read(recording, tmp_path):

@@ -26,7 +26,7 @@ import numpy as np
 import pyarrow as pa
 
 from zwidth.data.logs.served import INSTALL, MAGIC, ZSTD, Mcap
-from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed
+from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, readable
 from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
 
@@ -41,6 +41,9 @@ LOOKED_AT = 1000
 """Messages of a topic in which names are looked for: several may write to one topic in turn."""
 
 _UNITS = {"geometry_msgs/msg/Vector3.force": "N", "geometry_msgs/msg/Vector3.torque": "N*m"}
+
+_NAMING = ("name", "names")
+"""How a list of names is called at the end."""
 
 _Steps = tuple[Any, ...]
 """To a number in a message: members by name, places of a list by number, or by (name, steps to the names)."""
@@ -63,11 +66,20 @@ def bag_table(path: Path) -> Table:
     bag = _opened(path)
     with bag as reader:
         check_messages(path, reader)
-        for connection in reader.connections:
-            for field, unit, steps in _first(reader, connection):
-                columns[f"{connection.topic}.{field}"] = _Column(connection.topic, steps)
-                units[f"{connection.topic}.{field}"] = unit
         notes = {finding.kind: finding for finding in _left_out(path, reader)}
+        for connection in reader.connections:
+            topic = connection.topic
+            try:
+                with readable(f"{path}: the topic {topic}"):
+                    found = list(_first(reader, connection))
+            except InputError as error:
+                if len(reader.connections) == 1:
+                    raise
+                notes[topic] = Finding(kind="topics left out", text=f"left out: {error}")
+                continue
+            for field, unit, steps in found:
+                columns[f"{topic}.{field}"] = _Column(topic, steps)
+                units[f"{topic}.{field}"] = unit
     return Table(
         source=str(path), units=units, read=lambda names: _read(path, bag, names, columns, notes), notes=notes
     )
@@ -86,27 +98,41 @@ def _opened(path: Path) -> Any:
     return AnyReader([path], default_typestore=get_typestore(Stores.LATEST))
 
 
-_NAMED = re.compile(r"""^\s*- ["']?(\S+\.mcap)["']?\s*$""", re.MULTILINE)
-"""A file in the list of metadata.yaml: in it in the order of their times."""
-
-
 def _mcap_files(path: Path) -> list[Path]:
-    """The files of MCAP in a bag; none where it is another kind of bag."""
-    if path.is_dir():
-        named = _NAMED.findall((path / "metadata.yaml").read_text(encoding="utf-8"))
-        return [path / Path(name).name for name in named]
-    with open(path, "rb") as file:
-        return [path] if file.read(5) == MAGIC[:5] else []
+    """The files of MCAP in a bag, by their numbers; none where it is another kind of bag."""
+    if not path.is_dir():
+        with open(path, "rb") as file:
+            return [path] if file.read(5) == MAGIC[:5] else []
+    about = (path / "metadata.yaml").read_text(encoding="utf-8")
+    if not re.search(r"storage_identifier:\s*[\"']?mcap", about):
+        return []
+    files = sorted(path.glob("*.mcap"), key=lambda file: (len(file.name), file.name))
+    for name in re.findall(r"[^\s/\"']+\.mcap(?![\w.])", about) if files else ():
+        if not any(file.name.endswith(name) for file in files):
+            raise InputError(f"{path} is not whole: its {name} is missing; copy it there, or name one file")
+    return files
 
 
 def _first(reader: Any, connection: Any) -> Iterator[tuple[str, str | None, _Steps]]:
     """The numbers in the first message; in the first thousand where messages may differ."""
+    found: dict[_Steps, tuple[str, str | None]] = {}
     for _, _, data in islice(reader.messages(connections=[connection]), LOOKED_AT):
         message = reader.deserialize(data, connection.msgtype)
-        found = list(_fields(message, (), ()))
-        yield from found
-        if not isinstance(message, dict) and not any(_Column("", steps).name for *_, steps in found):
-            return
+        found |= {steps: (path, unit) for path, unit, steps in _fields(message)}
+        if not _may_differ(message):
+            break
+    named = {steps[:-1] for steps in found if isinstance(steps[-1], tuple)}
+    for steps, (path, unit) in found.items():
+        if not isinstance(steps[-1], int) or steps[:-1] not in named:  # what has names has no places
+            yield path, unit, steps
+
+
+def _may_differ(message: Any) -> bool:
+    """Whether another message may name other things: lists of names, empty ones too; JSON has no type."""
+    return isinstance(message, dict) or any(
+        _may_differ(value) or (name.endswith(_NAMING) and isinstance(value, list))
+        for name, value in _members(message).items()
+    )
 
 
 def _left_out(path: Path, reader: Any) -> Iterator[Finding]:
@@ -121,13 +147,20 @@ def _left_out(path: Path, reader: Any) -> Iterator[Finding]:
         )
     unread = ", ".join(f"{topic} ({how})" for topic, how in reader.unread.items())[:300]
     if not reader.connections:
-        said = f"its topics are in another encoding: {unread}" if unread else "it holds no whole message"
+        said = (
+            f"the messages of its topics are of no type that is known: {unread}"
+            if unread
+            else "it holds no whole message"
+        )
         raise InputError(f"{path} is not read: {said}; messages in cdr, ros1 and json are read")
     if reader.cut or reader.lost:
         text = "the file ends in the middle" if reader.cut else "the file is damaged"
         yield Finding(kind="cut", text=f"{text}: {reader.lost} of its {size} bytes are in no whole piece")
     if unread:
-        yield Finding(kind="topics left out", text=f"topics in another encoding are left out: {unread}")
+        yield Finding(
+            kind="topics left out",
+            text=f"topics with messages of no type that is known are left out: {unread}",
+        )
 
 
 def _members(message: Any) -> dict[str, Any]:
@@ -145,7 +178,7 @@ def _fields(
     the steps to the `labels` of the lists in it, if it has none of its own."""
     members = _members(message)
     for name, value in members.items():
-        if name.endswith(("name", "names")) and _are_names(value):
+        if name.endswith(_NAMING) and _are_names(value):
             names, labels = (*where, name), value
             break
     for name, value in members.items():
@@ -323,6 +356,10 @@ def check_bag(path: Path) -> None:
     for file in files:
         with open(file, "rb") as opened:
             start = opened.read(8)
+        if start.startswith(MAGIC[:5]):
+            raise InputError(
+                f"{path} is not read: its metadata.yaml does not say that it is MCAP; name {file}"
+            )
         if start.startswith(b"#ROSBAG"):
             _check_rosbag1(file)
         elif start[:4] == ZSTD or start[1:4] == b"\x2a\x4d\x18":

@@ -1,4 +1,4 @@
-"""Files of MCAP, those that a served loop wrote and others, from their first byte on as far as they are whole.
+"""Files of MCAP, of a served loop or of others, from their first byte on as far as they are whole.
 
 The index at the end of a file is not used: a file that was cut off has none.  Chunks stand one after the
 other, each with its checksum; the first that is not there as a whole ends what is read.  Layout:
@@ -399,16 +399,25 @@ class Mcap:
         if encoding not in ("cdr", "ros1"):
             return None
         try:
-            from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+            from rosbags.typesys import (
+                Stores,
+                TypesysError,
+                get_types_from_idl,
+                get_types_from_msg,
+                get_typestore,
+            )
         except ImportError:
             raise InputError(f"{self.path} cannot be read: {INSTALL}") from None
         store = get_typestore(Stores.EMPTY if text else Stores.LATEST)
-        if form.endswith("idl"):
-            parts = re.split(r"^=+\n(?:IDL: .*\n)?", text.decode(), flags=re.MULTILINE)
-            for part in filter(str.strip, parts):
-                store.register(get_types_from_idl(part))
-        elif text:
-            store.register(get_types_from_msg(text.decode(), name))
+        try:
+            if form.endswith("idl"):
+                parts = re.split(r"^=+\n(?:IDL: .*\n)?", text.decode(), flags=re.MULTILINE)
+                for part in filter(str.strip, parts):
+                    store.register(get_types_from_idl(part))
+            elif text:
+                store.register(get_types_from_msg(text.decode(), name))
+        except TypesysError:  # one topic of many
+            return None
         full = name if "/msg/" in name else name.replace("/", "/msg/")
         read = store.deserialize_cdr if encoding == "cdr" else store.deserialize_ros1
         return lambda data: read(data, full)
