@@ -73,9 +73,9 @@ def meaning_of(
             factors[quantity] = step if times is None else step * float(parse_number(times, "1", "scale"))
             continue
         where = f'{table.source}: {quantity} in column "{column}"'
-        if stated[quantity] is None and not isinstance(times, str) and column in table.likely:
-            likely = table.likely[column]
-            raise InputError(f'{where} has no unit: {likely}; state it with units={{"{quantity}": "deg"}}')
+        likely = table.likely.get(column) if quantity == "position" and not isinstance(times, str) else None
+        if likely and stated[quantity] is None:
+            raise InputError(f'{where} has no unit: {likely}; state it with units={{"position": "deg"}}')
         factors[quantity] = _factor(where, quantity, stated[quantity], times, turning)
     return Meaning(
         columns=columns, factors=factors, motion="rotary" if turning else "linear", resolution=step

@@ -27,13 +27,13 @@ def read_log(
     motion: Motion | None = None,
     sheet: str | None = None,
 ) -> Log:
-    """A log from a file: text, workbook, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, telemetry, what
-    zwidth wrote.
+    """A log from a file: text, workbook, Parquet, NetCDF, HDF5, MATLAB, NumPy, MCAP, ROS bags, telemetry,
+    what zwidth wrote.
 
     Parameters
     ----------
     path
-        The file, or the directory of a rosbag2.
+        The file, or the folder of a rosbag2 or of a LeRobot dataset.
     columns
         The column of each of time, position, hand_force and actuator_force, where its name is not recognised:
         {"position": "enc_left"}; None leaves one out: {"hand_force": None}.
