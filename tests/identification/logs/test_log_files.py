@@ -392,6 +392,11 @@ def test_rosbags(storage, recording, tmp_path):
         zw.read_log(path)
     (file,) = [p for p in path.iterdir() if p.suffix in (".mcap", ".db3")]
     assert_same(zw.read_log(file, **asked), recording)
+    file.rename(tmp_path / "elsewhere")
+    with pytest.raises(
+        zw.InputError, match=f"{file.name} is missing" if storage == "MCAP" else "cannot be read"
+    ):
+        zw.read_log(path, **asked)
 
 
 JOINTS = """std_msgs/Header header
@@ -559,7 +564,7 @@ def test_of_a_file_that_was_cut_its_whole_pieces_are_read(recording, tmp_path):
 
 def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
     path = mcap_of(tmp_path / "log.mcap", "joints", [(0.0, b"")])
-    for module in ("rosbags.highlevel", "rosbags.typesys"):
+    for module in ("rosbags", "rosbags.highlevel", "rosbags.typesys"):
         monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
         zw.read_log(path)

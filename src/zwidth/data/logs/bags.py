@@ -107,7 +107,7 @@ def _mcap_files(path: Path) -> list[Path]:
     if not re.search(r"storage_identifier:\s*[\"']?mcap", about):
         return []
     files = sorted(path.glob("*.mcap"), key=lambda file: (len(file.name), file.name))
-    for name in re.findall(r"[^\s/\"']+\.mcap(?![\w.])", about) if files else ():
+    for name in re.findall(r"[^\s/\"']+\.mcap(?![\w.])", about):
         if not any(file.name.endswith(name) for file in files):
             raise InputError(f"{path} is not whole: its {name} is missing; copy it there, or name one file")
     return files
@@ -147,20 +147,13 @@ def _left_out(path: Path, reader: Any) -> Iterator[Finding]:
         )
     unread = ", ".join(f"{topic} ({how})" for topic, how in reader.unread.items())[:300]
     if not reader.connections:
-        said = (
-            f"the messages of its topics are of no type that is known: {unread}"
-            if unread
-            else "it holds no whole message"
-        )
-        raise InputError(f"{path} is not read: {said}; messages in cdr, ros1 and json are read")
+        said = f"its messages are of no known type: {unread}" if unread else "it holds no whole message"
+        raise InputError(f"{path} is not read: {said}; cdr, ros1 and json are read")
     if reader.cut or reader.lost:
         text = "the file ends in the middle" if reader.cut else "the file is damaged"
         yield Finding(kind="cut", text=f"{text}: {reader.lost} of its {size} bytes are in no whole piece")
     if unread:
-        yield Finding(
-            kind="topics left out",
-            text=f"topics with messages of no type that is known are left out: {unread}",
-        )
+        yield Finding(kind="topics left out", text=f"topics of no known type are left out: {unread}")
 
 
 def _members(message: Any) -> dict[str, Any]:

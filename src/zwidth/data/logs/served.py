@@ -399,24 +399,18 @@ class Mcap:
         if encoding not in ("cdr", "ros1"):
             return None
         try:
-            from rosbags.typesys import (
-                Stores,
-                TypesysError,
-                get_types_from_idl,
-                get_types_from_msg,
-                get_typestore,
-            )
+            from rosbags import typesys
         except ImportError:
             raise InputError(f"{self.path} cannot be read: {INSTALL}") from None
-        store = get_typestore(Stores.EMPTY if text else Stores.LATEST)
+        store = typesys.get_typestore(typesys.Stores.EMPTY if text else typesys.Stores.LATEST)
         try:
             if form.endswith("idl"):
                 parts = re.split(r"^=+\n(?:IDL: .*\n)?", text.decode(), flags=re.MULTILINE)
                 for part in filter(str.strip, parts):
-                    store.register(get_types_from_idl(part))
+                    store.register(typesys.get_types_from_idl(part))
             elif text:
-                store.register(get_types_from_msg(text.decode(), name))
-        except TypesysError:  # one topic of many
+                store.register(typesys.get_types_from_msg(text.decode(), name))
+        except typesys.TypesysError:  # one topic of many
             return None
         full = name if "/msg/" in name else name.replace("/", "/msg/")
         read = store.deserialize_cdr if encoding == "cdr" else store.deserialize_ros1
