@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -114,6 +115,16 @@ def test_lists_in_parquet_as_a_robot_learning_dataset_has_them(shaken, tmp_path)
     found = zw.diagnose_pair(tmp_path / "episode.parquet", columns=names, units=UNITS)
     assert found.cause == "link delay"
     assert found.frequency == pytest.approx(9.5, rel=0.02)
+    bare = {side: column for side, column in names.items() if "position" in side}
+    without = tmp_path / "without.parquet"
+    pq.write_table(pa.table({k: v for k, v in columns.items() if "effort" not in k}), without)
+    for path, count in ((without, 1), (tmp_path / "episode.parquet", 2)):
+        with pytest.raises(zw.InputError) as told:  # two efforts in a list: which of them is whose
+            zw.diagnose_pair(path, columns=bare, units=UNITS)
+        asked = re.findall(r'columns=\{"(\w+)"', str(told.value))
+        assert asked[0] == "leader_actuator_force"
+        assert not any(name.count("leader") + name.count("follower") > 1 for name in asked)
+        assert ("without efforts" in str(told.value)) == (count == 1)
     one = {"position": "action[2]", "actuator_force": "action.effort[0]"}
     with pytest.raises(zw.InputError, match=r"action\[0\]"):
         zw.diagnose(tmp_path / "episode.parquet", columns=one)
@@ -140,7 +151,7 @@ def test_a_bag_with_the_joint_states_of_both_arms(storage, shaken, tmp_path):
     found = zw.diagnose_pair(tmp_path / "bag", units=UNITS)
     assert found.cause == "link delay"
     topic = names["leader"]
-    leader = {"position": f"{topic}.position[0]", "actuator_force": f"{topic}.effort[0]"}
+    leader = {"position": f"{topic}.position[elbow]", "actuator_force": f"{topic}.effort[elbow]"}
     one = zw.diagnose(tmp_path / "bag", columns=leader, units=UNITS)
     assert one.frequency == pytest.approx(found.frequency, rel=0.02)
 
@@ -151,7 +162,8 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
     slider = zw.Device(mass=0.1, damping=1, coulomb_friction=0, sample_period=PERIOD)
     path, data = written(tmp_path / "arms.csv", shaken), tmp_path / "set" / "data" / "chunk-000"
     data.mkdir(parents=True)
-    (data / "episode_000000.parquet").write_bytes(b"PAR1")
+    for k in range(2):
+        (data / f"episode_00000{k}.parquet").write_bytes(b"PAR1")
     (tmp_path / "set" / "meta").mkdir()
     (tmp_path / "set" / "meta" / "info.json").write_text("{}", encoding="utf-8")
     for ask, message in (

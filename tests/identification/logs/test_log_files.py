@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import bz2
 import gzip
+import io
+import json
 import sys
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -149,6 +155,83 @@ def test_parquet_in_any_types(recording, tmp_path):
     assert zw.read_log(tmp_path / "null.parquet", resolution="22.4 um").samples == 3999
 
 
+NANOSECONDS = (np.arange(4000) * 500_000 + 86_399 * 10**9).astype(np.int64)
+"""From a second before midnight on."""
+
+
+@pytest.mark.parametrize(
+    ("name", "stamps"),
+    [
+        ("elapsed", pa.array(NANOSECONDS).cast(pa.duration("ns"))),
+        ("elapsed", pa.array(NANOSECONDS // 1000).cast(pa.duration("us"))),
+        ("clock", pa.array(NANOSECONDS % (86400 * 10**9)).cast(pa.time64("ns"))),
+        ("clock", pa.array(NANOSECONDS // 1000 % (86400 * 10**6)).cast(pa.time64("us"))),
+        ("__index_level_0__", pa.array(NANOSECONDS).cast(pa.timestamp("ns"))),
+        ("__index_level_0__", pa.array(NANOSECONDS).cast(pa.duration("ns"))),
+        ("stamp", pa.array(NANOSECONDS.astype("datetime64[ns]").astype(str))),
+        ("stamp", pa.array([f"{text}Z" for text in NANOSECONDS.astype("datetime64[ns]").astype(str)])),
+        ("t_ns", pa.array([str(n) for n in NANOSECONDS])),
+    ],
+    ids=range(9),
+)
+def test_parquet_has_times_of_any_type(name, stamps, recording, tmp_path):
+    """Of a frame with an index that nobody named too; times of day go on past midnight."""
+    table = pa.table({"remark": ["x"] * 4000, "position_m": recording.position, name: stamps})
+    pq.write_table(table, tmp_path / "log.parquet", row_group_size=1500)
+    log = zw.read_log(tmp_path / "log.parquet")
+    (block,) = log.blocks()
+    assert np.abs(block.time - block.time[0] - recording.time).max() < 1e-10
+    assert log.sample_period == 5e-4
+    assert (block.position == recording.position).all()
+
+
+def lerobot_dataset(folder: Path, recording, about: dict[str, Any], names: Any) -> Path:
+    """Two episodes of one joint in one file."""
+    frame = np.tile(np.arange(500), 2)
+    state = np.stack([1e3 * recording.position[:1000], np.ones(1000)], axis=1).astype(np.float32)
+    columns = {
+        "observation.state": pa.FixedSizeListArray.from_arrays(state.ravel(), 2),
+        "timestamp": (frame / 30).astype(np.float32),
+        "frame_index": frame,
+        "episode_index": np.repeat([0, 1], 500),
+    }
+    (folder / "data" / "chunk-000").mkdir(parents=True)
+    (folder / "meta").mkdir()
+    features = {"observation.state": {"dtype": "float32", "shape": [2], "names": names}}
+    said = json.dumps({**about, "features": features})
+    (folder / "meta" / "info.json").write_text(said, encoding="utf-8")
+    pq.write_table(pa.table(columns), folder / "data" / "chunk-000" / "file-000.parquet")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("robot", "version", "names", "column", "likely"),
+    [
+        ("so101_follower", "v3.0", ["pan.pos", "gripper.pos"], "pan.pos", "degrees since LeRobot 0.4.4"),
+        ("so101_follower", "v2.1", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
+        ("so101_follower", "v3.0", ["pan.pos", "gripper.pos"], "gripper.pos", "mostly 0 … 100"),
+        ("so100", "v2.1", {"motors": ["main_pan", "main_gripper"]}, "main_pan", "mostly degrees"),
+        ("koch_follower", "v3.0", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
+        ("lekiwi", "v3.0", {"gripper.pos": 1, "pan.pos": 0}, "pan.pos", "since LeRobot 0.6.0"),
+        ("openarm_follower", "v3.0", ["joint_1.pos", "joint_2.pos"], "joint_1.pos", "mostly degrees"),
+        ("aloha", "v2.1", ["a"], "0", "use_degrees"),  # names that are not those of two numbers
+    ],
+)
+def test_a_lerobot_dataset_is_a_folder_with_names(robot, version, names, column, likely, recording, tmp_path):
+    about = {"robot_type": robot, "codebase_version": version}
+    folder = lerobot_dataset(tmp_path / "set", recording, about, names)
+    asked = {"columns": {"position": f"observation.state[{column}]"}}
+    with pytest.raises(zw.InputError, match=f"has no unit: .*{likely}.*state it"):
+        zw.read_log(folder, **asked)
+    if "gripper" in column:
+        return
+    log = zw.read_log(folder, **asked, units={"position": "deg"})
+    assert (log.runs, log.samples) == (2, 1000)
+    blocks = np.concatenate([block.position for block in log.blocks()])
+    assert np.abs(np.degrees(blocks) - 1e3 * recording.position[:1000]).max() < 1e-4
+    assert {"no clock", "episodes"} <= {finding.kind for finding in log.findings}
+
+
 def test_hdf5_groups_matrices_and_compounds(recording, tmp_path):
     path = tmp_path / "log.h5"
     matrix = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1)
@@ -199,6 +282,85 @@ def test_matlab_old_and_new(recording, tmp_path):
     assert_same(zw.read_log(tmp_path / "v73.mat"), recording)
 
 
+def signals_of(recording, labels: tuple[str, str]) -> Any:
+    """What a scope of Simulink saves of two axes, as a structure with time."""
+    signals = np.empty((1, 2), dtype=[("values", "O"), ("dimensions", "O"), ("label", "O")])
+    for k, (values, label) in enumerate(
+        zip((1e3 * recording.position, recording.force), labels, strict=True)
+    ):
+        signals[0, k] = (values[:, np.newaxis], 1.0, label)
+    return {"scope": {"time": recording.time[:, np.newaxis], "signals": signals, "blockName": "a/Scope"}}
+
+
+@pytest.mark.parametrize(
+    ("labels", "names", "units"),
+    [
+        (("position (mm)", "hand force [N]"), (None, None), {}),
+        (("read x (mm)", "load (N)"), ("signals[0].read x (mm)", "signals[1].load (N)"), {}),
+        (("read x (mm)", "load (N)"), ("signals[0].values", "signals[1].values"), {}),
+        (("", "  "), ("signals[0].values", "signals[1].values"), {"position": "mm", "hand_force": "N"}),
+    ],
+)
+def test_signals_of_simulink_are_known_by_label_and_by_place(labels, names, units, recording, tmp_path):
+    scipy.io.savemat(tmp_path / "scope.mat", signals_of(recording, labels))
+    chosen = {q: f"scope.{n}" for q, n in zip(("position", "hand_force"), names, strict=True) if n}
+    assert_same(zw.read_log(tmp_path / "scope.mat", columns=chosen, units=units), recording)
+
+
+def test_lists_of_matlab_7_3_lead_to_their_numbers(recording, tmp_path):
+    with h5py.File(tmp_path / "scope.mat", "w") as file:
+        hidden = [file.create_dataset(f"#refs#/{k}", data=values) for k, values in enumerate(recording[:3])]
+        label = file.create_dataset("#refs#/label", data=np.frombuffer(b"position", np.uint8).astype("u2"))
+        label.attrs["MATLAB_class"] = np.bytes_("char")
+        leads = np.array([each.ref for each in (*hidden, label)], dtype=h5py.ref_dtype)
+        file["scope/values"] = leads[:, np.newaxis]
+    columns = by_name(*(f"scope/values[{k}]" for k in range(3)))
+    log = zw.read_log(tmp_path / "scope.mat", columns=columns, units={**UNITS, "position": "m"})
+    assert_same(log, recording)
+    with pytest.raises(zw.InputError, match=r"values\[2\]\"$"):  # no letters among the numbers
+        zw.read_log(tmp_path / "scope.mat")
+
+
+def test_what_scipy_says_of_a_file_is_a_finding(recording, tmp_path, recwarn):
+    whole = io.BytesIO()
+    scipy.io.savemat(whole, {"time_s": recording.time, "position_mm": 1e3 * recording.position})
+    again = io.BytesIO()
+    scipy.io.savemat(again, {"position_mm": 1e3 * recording.position})
+    (tmp_path / "log.mat").write_bytes(whole.getvalue() + again.getvalue()[128:])
+    log = zw.read_log(tmp_path / "log.mat")
+    assert_same(log, recording, force=False)
+    assert any('"position_mm"' in finding.text and "\n" not in finding.text for finding in log.findings)
+    assert len(recwarn) == 0
+
+
+def of_numpy(kind: str, path: Path, recording) -> dict[str, Any]:
+    """Write it; how to read it."""
+    stamps = (1e9 * recording.time).round().astype(np.int64)
+    columns = {
+        "t_s": recording.time,
+        "position_mm": 1e3 * recording.position,
+        "hand_force_N": recording.force,
+    }
+    if kind in ("archive", "compressed"):
+        {"archive": np.savez, "compressed": np.savez_compressed}[kind](path, **columns, rate=2000.0)
+    elif kind == "fields":
+        np.save(path, np.rec.fromarrays(list(columns.values()), names=",".join(columns)))
+    elif kind in ("rows", "columns"):
+        matrix = np.stack(list(columns.values()), axis=1)
+        np.save(path, matrix if kind == "rows" else np.asfortranarray(matrix.T))
+        return {"columns": by_name(*(f"data[{k}]" for k in range(3))), "units": UNITS}
+    else:
+        dates = stamps.astype("timedelta64[ns]") if kind == "durations" else stamps.astype("datetime64[ns]")
+        np.savez(path, **{**columns, "t_s": dates})
+    return {}
+
+
+@pytest.mark.parametrize("kind", ["archive", "compressed", "fields", "rows", "columns", "durations", "dates"])
+def test_files_of_numpy(kind, recording, tmp_path):
+    path = tmp_path / ("log.npy" if kind in ("fields", "rows", "columns") else "log.npz")
+    assert_same(zw.read_log(path, **of_numpy(kind, path, recording)), recording)
+
+
 @pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
 def test_rosbags(storage, recording, tmp_path):
     from rosbags.rosbag2 import StoragePlugin, Writer
@@ -226,16 +388,184 @@ def test_rosbags(storage, recording, tmp_path):
     log = zw.read_log(path, **asked)
     assert_same(log, recording)
     assert {"dates", "two topics"} <= {f.kind for f in log.findings}
-    with pytest.raises(zw.InputError, match=r"joint_states.position\[0\].*has no unit"):
+    with pytest.raises(zw.InputError, match=r"joint_states.position\[stylus\].*has no unit"):
         zw.read_log(path)
     (file,) = [p for p in path.iterdir() if p.suffix in (".mcap", ".db3")]
     assert_same(zw.read_log(file, **asked), recording)
+    file.rename(tmp_path / "elsewhere")
+    with pytest.raises(
+        zw.InputError, match=f"{file.name} is missing" if storage == "MCAP" else "cannot be read"
+    ):
+        zw.read_log(path, **asked)
+
+
+JOINTS = """std_msgs/Header header
+string[] name
+float64[] position
+float64[] effort
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+STATE = """string[] joint_names
+control_msgs/InterfaceValue[] interface_values
+================================================================================
+MSG: control_msgs/InterfaceValue
+string[] interface_names
+float64[] values
+"""
+
+
+@cache
+def store_of(kind: str) -> tuple[str, Any]:
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.EMPTY)
+    name, text = {"joints": ("a/msg/Joints", JOINTS), "state": ("a/msg/State", STATE)}[kind]
+    store.register(get_types_from_msg(text, name))
+    return name, store
+
+
+def of_two_joints(time: float, shoulder: float, elbow: float, swapped: bool | None, kind: str) -> bytes:
+    """A message of two joints: one type of ROS, another whose lists are in lists, or JSON."""
+    names, both = ["shoulder", "elbow"], [[shoulder, 2 * shoulder], [elbow, 3 * elbow]]
+    if swapped:
+        names, both = names[::-1], both[::-1]
+    if swapped is None:
+        names = []
+    stamp = divmod(1_700_000_000_000_000_000 + round(time * 1e9), 10**9)
+    if kind == "json":
+        about = {"header": {"stamp": {"sec": stamp[0], "nsec": stamp[1]}}, "names": names}
+        state = {"position": [x for x, _ in both], "time_from_start": {"sec": 0, "nanosec": 5}}
+        return json.dumps({**about, "state": state, "on": True}).encode()
+    name, store = store_of(kind)
+    types = store.types
+    if kind == "joints":
+        header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](*stamp), "")
+        said = types[name](header, names, *np.array(both).T.copy())
+    else:
+        of_one = types["control_msgs/msg/InterfaceValue"]
+        said = types[name](names, [of_one(["position", "effort"], np.array(values)) for values in both])
+    return bytes(store.serialize_cdr(said, name))
+
+
+def mcap_of(path: Path, kind: str, messages: Iterable[tuple[float, bytes]], **options: Any) -> Path:
+    """A file in one topic, as another program writes it."""
+    from mcap.writer import Writer
+
+    with open(path, "wb") as file:
+        writer = Writer(file, **{"chunk_size": 4000, **options})
+        writer.start(profile="" if kind == "json" else "ros2")
+        name, form, text = {
+            "joints": ("a/msg/Joints", "ros2msg", JOINTS),
+            "state": ("a/msg/State", "ros2msg", STATE),
+            "json": ("State", "jsonschema", "{}"),
+        }[kind]
+        schema = writer.register_schema(name, form, text.encode())
+        channel = writer.register_channel("/arm", "json" if kind == "json" else "cdr", schema)
+        for time, data in messages:
+            stamp = 1_700_000_000_000_000_000 + round(time * 1e9)
+            writer.add_message(channel, stamp, data, stamp)
+        writer.finish()
+    return path
+
+
+@pytest.mark.parametrize("chunked", [True, False])
+@pytest.mark.parametrize(
+    ("kind", "column"),
+    [
+        ("joints", "/arm.position[{}]"),
+        ("state", "/arm.interface_values[{}].values[position]"),
+        ("json", "/arm.state.position[{}]"),
+    ],
+)
+def test_what_a_message_names_is_known_by_its_name(kind, column, chunked, recording, tmp_path):
+    """Two joints change places at every third message, and every seventh message is of another one."""
+    pytest.importorskip("rosbags")
+    messages = [(-5e-4, of_two_joints(-5e-4, 1.0, 2.0, None, kind))]  # without names
+    for k, (t, x, f) in enumerate(zip(recording.time[:900], *recording[1:3], strict=False)):
+        messages.append((t, of_two_joints(t, x, f, k % 3 == 0, kind)))
+        if k % 7 == 0:
+            other = messages[-1][1].replace(b"shoulder", b"gripper_")
+            messages.append((t + 1e-4, other))
+    path = mcap_of(tmp_path / "log.mcap", kind, messages, use_chunking=chunked)
+    units = {"position": "m"}
+    log = zw.read_log(path, columns={"position": column.format("shoulder"), "hand_force": None}, units=units)
+    (block,) = log.blocks()
+    assert np.abs(block.position - recording.position[:900]).max() < 1e-15
+    said = {finding.kind: finding for finding in log.findings}
+    assert (said["messages left out"].samples, "cut" in said) == (130, False)
+    assert '"elbow", "gripper_"' in said["names left out"].text
+    with pytest.raises(zw.InputError, match=r"no column.*\[shoulder\]"):
+        zw.read_log(path, columns={"position": column.format("0")}, units=units)
+
+
+def test_topics_that_cannot_be_read_do_not_hide_the_others(recording, tmp_path):
+    """Of another encoding, of a type that is none, or with bytes that are no message."""
+    pytest.importorskip("rosbags")
+    from mcap.writer import Writer
+
+    with open(tmp_path / "log.mcap", "wb") as file:
+        writer = Writer(file)
+        writer.start()
+        topics = {"/arm": ("json", "jsonschema", "{}"), "/odd": ("protobuf", "protobuf", "")}
+        topics |= {"/wrong": ("cdr", "ros2msg", "float64[ x"), "/bytes": ("cdr", "ros2msg", "float64 x")}
+        for topic, (encoding, form, text) in topics.items():
+            schema = writer.register_schema("a/msg/B", form, text.encode())
+            channel = writer.register_channel(topic, encoding, schema)
+            for t, x in zip(recording.time[:500], recording.position, strict=False):
+                data = json.dumps({"x_mm": 1e3 * x}).encode() if topic == "/arm" else b"x"
+                writer.add_message(channel, 10**18 + round(t * 1e9), data, 10**18)
+        writer.finish()
+    log = zw.read_log(tmp_path / "log.mcap")
+    assert (log.samples, log.sample_period) == (500, 5e-4)
+    said = " ".join(finding.text for finding in log.findings)
+    assert all(
+        topic in said for topic in ("/odd (protobuf)", "/wrong (cdr)", "the topic /bytes cannot be read")
+    )
+
+
+def test_of_a_file_that_was_cut_its_whole_pieces_are_read(recording, tmp_path):
+    """Cut anywhere, or damaged in one place."""
+    pytest.importorskip("rosbags")
+    rows = list(zip(recording.time[:900], *recording[1:3], strict=False))
+    path = mcap_of(
+        tmp_path / "log.mcap", "joints", ((t, of_two_joints(t, x, f, False, "joints")) for t, x, f in rows)
+    )
+    whole, (low, high) = path.read_bytes(), (0, 0)
+    asked = {
+        "columns": {"position": "/arm.position[shoulder]", "hand_force": None},
+        "units": {"position": "m"},
+    }
+    for end in range(300, len(whole), len(whole) // 17):
+        path.write_bytes(whole[:end])
+        if end < 2 * 600:  # less than a chunk
+            with pytest.raises(zw.InputError, match="ends in the middle"):
+                zw.read_log(path, **asked)
+            low += 1
+            continue
+        log = zw.read_log(path, **asked)
+        high += log.samples < 900
+        assert ("cut" in {f.kind for f in log.findings}) == (log.samples < 900)
+        blocks = list(log.blocks())
+        assert (np.concatenate([b.position for b in blocks]) == recording.position[: log.samples]).all()
+    assert low >= 1 <= 8 <= high
+    middle = len(whole) // 3
+    path.write_bytes(whole[:middle] + bytes([whole[middle] ^ 255]) + whole[middle + 1 :])
+    log = zw.read_log(path, **asked)
+    assert log.runs == 2
+    assert any("the file is damaged" in f.text for f in log.findings)
 
 
 def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "rosbags.highlevel", None)
-    path = tmp_path / "log.mcap"
-    path.write_bytes(b"\x89MCAP0\r\n" + bytes(100) + b"\x89MCAP0\r\n")
+    path = mcap_of(tmp_path / "log.mcap", "joints", [(0.0, b"")])
+    for module in ("rosbags", "rosbags.highlevel", "rosbags.typesys"):
+        monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
         zw.read_log(path)
 

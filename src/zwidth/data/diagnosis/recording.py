@@ -11,7 +11,7 @@ file has the position that was aimed at, the law is of the error, and a target t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -80,11 +80,20 @@ def read(
         return _recording(recording, None, recording, ())
     sheet = reading.pop("sheet", None)
     told = (dict(columns or {}), units or {}, scale or {}, reading)
-    if not isinstance(recording, str | PathLike):
-        names = [str(name) for name in recording.variables]
-        return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
-    with opened(recording, sheet, columns) as table:
-        return read_of_table(table, *told)
+    names: list[str] = []
+    try:
+        if not isinstance(recording, str | PathLike):
+            names = [str(name) for name in recording.variables]
+            return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
+        with opened(recording, sheet, columns) as table:
+            names = list(table.units)
+            return read_of_table(table, *told)
+    except _Forceless as error:
+        raise InputError(f"{error}{_two_arms(names)}") from None
+
+
+class _Forceless(InputError):
+    """No one column is the actuator's force: there may be two arms."""
 
 
 def read_of_table(
@@ -112,12 +121,12 @@ def _read(
     """A log for each force that there is, of the same rows."""
     roles = _roles(names, source, columns)
     if not roles:
-        raise InputError(
+        raise _Forceless(
             f"{source}: no column is known to be the actuator's force, and without it nobody can "
             "say where the energy of a vibration comes from; say which with "
             f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
             'columns={"actuator_force": …} for what the motor gives; there are '
-            f"{', '.join(names)}{_two_arms(names)}"
+            f"{', '.join(names)}{without_effort(names)}"
         )
     logs = {
         role: log(**_arguments(role, column, columns, units, scale), **reading)
@@ -185,9 +194,9 @@ def _roles(names: list[str], source: str, wanted: Mapping[str, str | None]) -> d
         elif len(found.get(role, ())) == 1:
             roles[role] = found[role][0]
         elif found.get(role) and not any(wanted.get(other) for other in (COMMANDED, "actuator_force")):
-            raise InputError(
+            raise _Forceless(
                 f"{source}: {', '.join(found[role])} may each be the {role.replace('_', ' ')}; "
-                f'say which with columns={{"{role}": "{found[role][0]}"}}{_two_arms(names)}'
+                f'say which with columns={{"{role}": "{found[role][0]}"}}'
             )
     if not roles and len(found.get("force", ())) == 1:
         roles["force"] = found["force"][0]
@@ -205,6 +214,16 @@ def _two_arms(names: list[str]) -> str:
         ". If these are two arms, one following the other, say whose each is: "
         'columns={"leader_position": …}, columns={"follower_position": …}, and the forces alike'
         if several
+        else ""
+    )
+
+
+def without_effort(names: Iterable[str]) -> str:
+    """What can be done with an episode of LeRobot that has no effort, behind a message that asks for one."""
+    return (
+        ". An episode of LeRobot without efforts cannot be diagnosed: record the motors' currents beside it, "
+        "or have its gains proved without a recording, by zwidth gains FILE"
+        if any(name.startswith("observation.state") for name in names)
         else ""
     )
 

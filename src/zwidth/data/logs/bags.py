@@ -1,4 +1,8 @@
-"""ROS bags, sqlite or MCAP: the numbers in the messages of each topic, by path, "/joint_states.position[0]".
+"""ROS bags, sqlite or MCAP: the numbers in the messages of each topic, by path, "/hand.wrench.force.z".
+
+Where a message names what its lists hold, as a JointState does, a number is known by that name and never by
+its place: "/joint_states.position[shoulder]" is the shoulder's in every message, wherever it stands there,
+and messages without it are no samples.
 
 A sample's stamp is that of its message's header, or else when it was recorded.  A column of another topic is
 taken from the message nearest in time, at most half a period away.  Messages are unpacked one by one, and
@@ -7,9 +11,12 @@ their numbers held in memory.
 
 from __future__ import annotations
 
+import re
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from io import BytesIO
+from itertools import islice
 from os import fstat
 from pathlib import Path
 from struct import unpack
@@ -18,7 +25,8 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces
+from zwidth.data.logs.served import INSTALL, MAGIC, ZSTD, Mcap
+from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, readable
 from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
 
@@ -29,119 +37,277 @@ if TYPE_CHECKING:
 TIME = "time"
 """The column of stamps: of the topic that holds the position."""
 
+LOOKED_AT = 1000
+"""Messages of a topic in which names are looked for: several may write to one topic in turn."""
+
 _UNITS = {"geometry_msgs/msg/Vector3.force": "N", "geometry_msgs/msg/Vector3.torque": "N*m"}
-_INSTALL = "reading ROS bags and MCAP takes a library that is not installed: pip install 'zwidth[logs]'"
+
+_NAMING = ("name", "names")
+"""How a list of names is called at the end."""
+
+_Steps = tuple[Any, ...]
+"""To a number in a message: members by name, places of a list by number, or by (name, steps to the names)."""
+
+
+class _Column(NamedTuple):
+    topic: str
+    steps: _Steps
+
+    @property
+    def name(self) -> str | None:
+        """What the message itself calls it; None where it goes by its place."""
+        return next((step[0] for step in self.steps if isinstance(step, tuple)), None)
 
 
 def bag_table(path: Path) -> Table:
     """The numbers in a bag."""
-    paths: dict[str, str] = {}
+    columns: dict[str, _Column] = {}
     units: dict[str, str | None] = {TIME: "ns"}
-    check_bag(path)
-    with _opened(path) as reader:
+    bag = _opened(path)
+    with bag as reader:
         check_messages(path, reader)
+        notes = {finding.kind: finding for finding in _left_out(path, reader)}
         for connection in reader.connections:
-            message = _first(reader, connection)
-            for field, unit in _fields(message):
-                paths[f"{connection.topic}.{field}"] = connection.topic
-                units[f"{connection.topic}.{field}"] = unit
-    notes: dict[str, Finding] = {}
+            topic = connection.topic
+            try:
+                with readable(f"{path}: the topic {topic}"):
+                    found = list(_first(reader, connection))
+            except InputError as error:
+                if len(reader.connections) == 1:
+                    raise
+                notes[topic] = Finding(kind="topics left out", text=f"left out: {error}")
+                continue
+            for field, unit, steps in found:
+                columns[f"{topic}.{field}"] = _Column(topic, steps)
+                units[f"{topic}.{field}"] = unit
     return Table(
-        source=str(path), units=units, read=lambda names: _read(path, names, paths, notes), notes=notes
+        source=str(path), units=units, read=lambda names: _read(path, bag, names, columns, notes), notes=notes
     )
 
 
 def _opened(path: Path) -> Any:
+    files = _mcap_files(path)
+    if files:
+        return Mcap(path, files)
+    check_bag(path)
     try:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError:
-        raise InputError(f"{path} cannot be read: {_INSTALL}") from None
+        raise InputError(f"{path} cannot be read: {INSTALL}") from None
     return AnyReader([path], default_typestore=get_typestore(Stores.LATEST))
 
 
-def _first(reader: Any, connection: Any) -> Any:
-    for _, _, data in reader.messages(connections=[connection]):
-        return reader.deserialize(data, connection.msgtype)
-    return None
+def _mcap_files(path: Path) -> list[Path]:
+    """The files of MCAP in a bag, by their numbers; none where it is another kind of bag."""
+    if not path.is_dir():
+        with open(path, "rb") as file:
+            return [path] if file.read(5) == MAGIC[:5] else []
+    about = (path / "metadata.yaml").read_text(encoding="utf-8")
+    if not re.search(r"storage_identifier:\s*[\"']?mcap", about):
+        return []
+    files = sorted(path.glob("*.mcap"), key=lambda file: (len(file.name), file.name))
+    for name in re.findall(r"[^\s/\"']+\.mcap(?![\w.])", about):
+        if not any(file.name.endswith(name) for file in files):
+            raise InputError(f"{path} is not whole: its {name} is missing; copy it there, or name one file")
+    return files
 
 
-def _fields(message: Any) -> Iterator[tuple[str, str | None]]:
-    """Paths of the numbers in a message, and the unit where its type has one."""
-    for name in getattr(message, "__dataclass_fields__", {}):
-        value = getattr(message, name)
-        if name in ("header", "__msgtype__"):
+def _first(reader: Any, connection: Any) -> Iterator[tuple[str, str | None, _Steps]]:
+    """The numbers in the first message; in the first thousand where messages may differ."""
+    found: dict[_Steps, tuple[str, str | None]] = {}
+    for _, _, data in islice(reader.messages(connections=[connection]), LOOKED_AT):
+        message = reader.deserialize(data, connection.msgtype)
+        found |= {steps: (path, unit) for path, unit, steps in _fields(message)}
+        if not _may_differ(message):
+            break
+    named = {steps[:-1] for steps in found if isinstance(steps[-1], tuple)}
+    for steps, (path, unit) in found.items():
+        if not isinstance(steps[-1], int) or steps[:-1] not in named:  # what has names has no places
+            yield path, unit, steps
+
+
+def _may_differ(message: Any) -> bool:
+    """Whether another message may name other things: lists of names, empty ones too; JSON has no type."""
+    return isinstance(message, dict) or any(
+        _may_differ(value) or (name.endswith(_NAMING) and isinstance(value, list))
+        for name, value in _members(message).items()
+    )
+
+
+def _left_out(path: Path, reader: Any) -> Iterator[Finding]:
+    """What a file of MCAP lost, and what in it is not read; refused where nothing is left."""
+    if not isinstance(reader, Mcap):
+        return
+    size = sum(file.stat().st_size for file in reader.files)
+    if reader.cut and not reader.connections:
+        raise InputError(
+            f"{path} ends in the middle, after {size} bytes: was it copied whole, its recorder ended? "
+            "No whole piece of it is there"
+        )
+    unread = ", ".join(f"{topic} ({how})" for topic, how in reader.unread.items())[:300]
+    if not reader.connections:
+        said = f"its messages are of no known type: {unread}" if unread else "it holds no whole message"
+        raise InputError(f"{path} is not read: {said}; cdr, ros1 and json are read")
+    if reader.cut or reader.lost:
+        text = "the file ends in the middle" if reader.cut else "the file is damaged"
+        yield Finding(kind="cut", text=f"{text}: {reader.lost} of its {size} bytes are in no whole piece")
+    if unread:
+        yield Finding(kind="topics left out", text=f"topics of no known type are left out: {unread}")
+
+
+def _members(message: Any) -> dict[str, Any]:
+    """What a message holds, by name; nothing where it is none."""
+    if isinstance(message, dict):
+        return message
+    fields = getattr(message, "__dataclass_fields__", ())
+    return {name: getattr(message, name) for name in fields if name != "__msgtype__"}
+
+
+def _fields(
+    message: Any, where: _Steps = (), names: _Steps = (), labels: Sequence[str] = ()
+) -> Iterator[tuple[str, str | None, _Steps]]:
+    """Paths of the numbers in a message, the unit where its type has one, and the steps to them; `names` are
+    the steps to the `labels` of the lists in it, if it has none of its own."""
+    members = _members(message)
+    for name, value in members.items():
+        if name.endswith(_NAMING) and _are_names(value):
+            names, labels = (*where, name), value
+            break
+    for name, value in members.items():
+        here = (*where, name)
+        if name == "header" or _instant(value) is not None:
             continue
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            yield name, None
-        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.size <= MOST_COLUMNS:
-            for k in range(value.size):
-                yield f"{name}[{k}]", None
-        elif hasattr(value, "__dataclass_fields__"):
-            unit = _UNITS.get(f"{value.__msgtype__}.{name}")
-            for inner, inner_unit in _fields(value):
-                yield f"{name}.{inner}", inner_unit or unit
+        if _is_number(value):
+            yield name, None, here
+        elif isinstance(value, np.ndarray | list) and 0 < len(value) <= MOST_COLUMNS:
+            named = len(value) == len(labels)
+            for k, one in enumerate(value):
+                place = (labels[k], names) if named else k
+                path, steps = f"{name}[{labels[k] if named else k}]", (*here, place)
+                if _is_number(one):
+                    yield path, None, steps
+                elif named:
+                    for inner, unit, further in _fields(one, steps):
+                        yield f"{path}.{inner}", unit, further
+        elif _members(value):
+            unit = _UNITS.get(f"{getattr(value, '__msgtype__', '')}.{name}")
+            for inner, inner_unit, steps in _fields(value, here, names, labels):
+                yield f"{name}.{inner}", inner_unit or unit, steps
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def _are_names(value: Any) -> bool:
+    """Whether it is a list of texts that tell its places apart."""
+    texts = isinstance(value, list) and bool(value) and all(isinstance(v, str) and v for v in value)
+    return texts and len(set(value)) == len(value)
+
+
+def _instant(value: Any) -> int | None:
+    """[ns] of a time in two numbers; None where it is none."""
+    members = _members(value)
+    parts = [members[k] for k in ("sec", "secs", "nanosec", "nsec", "nsecs") if k in members]
+    whole = len(parts) == len(members) == 2 and all(map(_is_number, parts))
+    return int(parts[0]) * 10**9 + int(parts[1]) if whole else None
+
+
+def _stamp(message: Any) -> int:
+    """[ns] when a message says that it was sampled; 0 where it does not."""
+    with suppress(AttributeError):  # most messages of ROS, quickly
+        return int(message.header.stamp.sec * 10**9 + message.header.stamp.nanosec)
+    members = _members(message)
+    holders = (_members(members.get("header")), members)
+    found = (_instant(holder.get(name)) for holder in holders for name in ("stamp", "timestamp"))
+    return next(filter(None, found), 0)
 
 
 def _read(
-    path: Path, names: tuple[str, ...], topics: dict[str, str], notes: dict[str, Finding]
+    path: Path,
+    bag: Any,
+    names: tuple[str, ...],
+    columns: dict[str, _Column],
+    notes: dict[str, Finding],
 ) -> Iterator[tuple[Values, ...]]:
-    wanted = [name for name in names if name != TIME]
-    main = topics[wanted[0]]
-    with _opened(path) as reader:
-        stamps, values = _unpacked(reader, {name: topics[name] for name in wanted})
-    columns: dict[str, NDArray[Any]] = {TIME: stamps[main]}
-    for name in wanted:
-        columns[name] = values[name]
-        if topics[name] != main:
-            columns[name] = _nearest(stamps[main], stamps[topics[name]], values[name])
+    wanted = {name: columns[name] for name in names if name != TIME}
+    first = next(iter(wanted))
+    main = columns[first].topic
+    with bag as reader:
+        stamps, rows, values = _unpacked(reader, wanted)
+    taken = rows[first]
+    if missing := stamps[main].size - taken.size:
+        text = f'{missing} of {stamps[main].size} messages of "{main}" have no {first} and are left out'
+        notes["messages left out"] = Finding(kind="messages left out", text=text, samples=missing)
+    used = {column.name for column in wanted.values()}
+    others = {column.name for column in columns.values() if column.topic == main} - used - {None}
+    if columns[first].name is not None and others:
+        text = f'"{main}" also holds {listed(sorted(map(str, others)))}: not read'
+        notes["names left out"] = Finding(kind="names left out", text=text)
+    found: dict[str, NDArray[Any]] = {TIME: stamps[main][taken]}
+    for name, (topic, _) in wanted.items():
+        if topic == main:
+            whole = np.full(stamps[main].size, np.nan)
+            whole[rows[name]] = values[name]
+            found[name] = whole[taken]
+        else:
+            found[name] = _nearest(found[TIME], stamps[topic][rows[name]], values[name])
             text = (
                 f'"{name}" is of another topic than the position; each sample has the value nearest in time'
             )
             notes[name] = Finding(kind="two topics", text=text)
-    yield from in_pieces(str(path), columns, names)
+    yield from in_pieces(str(path), found, names)
 
 
-def _unpacked(reader: Any, topics: dict[str, str]) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
-    """Stamps [ns] of each topic, and the numbers of each column."""
-    stamps = {topic: array("q") for topic in topics.values()}
-    numbers = {name: array("d") for name in topics}
-    steps = {name: _steps(name.removeprefix(topic + ".")) for name, topic in topics.items()}
+_Arrays = dict[str, "NDArray[Any]"]
+
+
+def _unpacked(reader: Any, columns: dict[str, _Column]) -> tuple[_Arrays, _Arrays, _Arrays]:
+    """Stamps [ns] of the messages of each topic; of each column which of them have it, and its numbers."""
+    stamps = {column.topic: array("q") for column in columns.values()}
+    rows = {name: array("q") for name in columns}
+    numbers = {name: array("d") for name in columns}
     connections = [c for c in reader.connections if c.topic in stamps]
     for connection, recorded, data in reader.messages(connections=connections):
         message = reader.deserialize(data, connection.msgtype)
-        stamp = getattr(getattr(message, "header", None), "stamp", None)
-        taken = 0 if stamp is None else stamp.sec * 10**9 + stamp.nanosec
-        stamps[connection.topic].append(taken or recorded)
-        for name, topic in topics.items():
-            if topic == connection.topic:
-                numbers[name].append(_value(message, steps[name]))
+        of_topic = stamps[connection.topic]
+        for name, (topic, steps) in columns.items():
+            if topic == connection.topic and (value := _value(message, steps)) is not None:
+                rows[name].append(len(of_topic))
+                numbers[name].append(value)
+        of_topic.append(_stamp(message) or recorded)
     return (
         {topic: np.frombuffer(values, dtype=np.int64) for topic, values in stamps.items()},
+        {name: np.frombuffer(values, dtype=np.int64) for name, values in rows.items()},
         {name: np.frombuffer(values, dtype=np.float64) for name, values in numbers.items()},
     )
 
 
-def _steps(path: str) -> list[str | int]:
-    """ "wrench.force.z" and "position[0]" as names and indices."""
-    steps: list[str | int] = []
-    for part in path.split("."):
-        name, bracket, index = part.partition("[")
-        steps.append(name)
-        if bracket:
-            steps.append(int(index[:-1]))
-    return steps
+def _value(message: Any, steps: _Steps) -> float | None:
+    """A number of a message: None where it has none of that name, NaN where there is no number."""
+    value = _followed(message, steps)
+    return value if value is None else float(value) if _is_number(value) else float("nan")
 
 
-def _value(message: Any, steps: list[str | int]) -> float:
+def _followed(message: Any, steps: _Steps) -> Any:
+    value = message
     for step in steps:
-        if isinstance(step, int):
-            if step >= len(message):
-                return float("nan")
-            message = message[step]
-        else:
-            message = getattr(message, step)
-    return float(message)
+        if isinstance(step, str):
+            value = value.get(step) if isinstance(value, dict) else getattr(value, step)
+            if value is None:
+                return None
+            continue
+        place = step
+        if isinstance(step, tuple):
+            labels = _followed(message, step[1])
+            if labels is None or step[0] not in labels:
+                return None
+            place = labels.index(step[0])
+        if place >= len(value):
+            return float("nan")
+        value = value[place]
+    return value
 
 
 def _nearest(wanted: NDArray[Any], stamps: NDArray[Any], values: NDArray[Any]) -> NDArray[Any]:
@@ -163,10 +329,7 @@ def _nearest(wanted: NDArray[Any], stamps: NDArray[Any], values: NDArray[Any]) -
 # both, and holds neither against what is in the file before it is expanded.
 
 
-_CHUNK, _CHUNK_INDEX = 0x06, 0x08
-_MCAP = b"\x89MCAP"
-_MCAP_END = b"\x89MCAP0\r\n"
-_CODECS = ("lz4", "zstd", "bz2")
+_CODECS = ("lz4", "bz2")
 _ROS1_START, _ROS1_CHUNK, _ROS1_INDEX = 13, b"\x05", b"\x06"
 _STEP = 2**20
 
@@ -186,18 +349,20 @@ def check_bag(path: Path) -> None:
     for file in files:
         with open(file, "rb") as opened:
             start = opened.read(8)
-        if start.startswith(_MCAP):
-            _check_mcap(file)
-        elif start.startswith(b"#ROSBAG"):
+        if start.startswith(MAGIC[:5]):
+            raise InputError(
+                f"{path} is not read: its metadata.yaml does not say that it is MCAP; name {file}"
+            )
+        if start.startswith(b"#ROSBAG"):
             _check_rosbag1(file)
-        elif start[:4] == b"\x28\xb5\x2f\xfd" or start[1:4] == b"\x2a\x4d\x18":  # of zstd
+        elif start[:4] == ZSTD or start[1:4] == b"\x2a\x4d\x18":
             _check_packed(file)
 
 
 def _check_packed(path: Path) -> None:
     """Count what the library would unpack to the disk, and then trust."""
     with Bounded(path, pa.input_stream(str(path), compression="zstd")) as whole:
-        if whole.read(_STEP).startswith(_MCAP):
+        if whole.read(_STEP).startswith(MAGIC[:5]):
             raise InputError(f"{path} is not read: compressed are its pieces, and it again; unpack it first")
         while whole.read(_STEP):
             pass
@@ -211,38 +376,6 @@ def check_messages(path: Path, reader: Any) -> None:
         for store in part.storage.storages:
             for _, _, data in store.messages(store.connections):
                 check_chunk(path, _grown(data, "zstd"))
-
-
-def _check_mcap(path: Path) -> None:
-    with open(path, "rb") as file:
-        size = path.stat().st_size
-        file.seek(max(0, size - len(_MCAP_END)))
-        if file.read() != _MCAP_END:
-            raise InputError(
-                f"{path} ends in the middle, after {size} bytes: was it copied whole, its recorder ended? "
-                "mcap recover FILE -o WHOLE makes a whole file of what is there"
-            )
-        declared = 0
-        for piece in _pieces(file, path.stat().st_size):
-            declared += piece.declared
-            check_chunk(path, piece.declared)
-            check_chunk(path, _expanded(file, piece))
-    check_expansion(path, declared // 2)  # each is in the data and in the index
-
-
-def _pieces(file: IO[bytes], end: int) -> Iterator[_Piece]:
-    """Those in the chunks, and those to which the index leads: the library believes it."""
-    place = 8
-    while place + 9 <= end:
-        file.seek(place)
-        kind, size = unpack("<BQ", file.read(9))
-        start, place = place + 9, place + 9 + size
-        if place > end:
-            return  # cut off, as the library will say
-        if kind == _CHUNK:
-            yield _chunk(file, start)
-        elif kind == _CHUNK_INDEX:
-            yield _indexed(BytesIO(file.read(size)))
 
 
 def _check_rosbag1(path: Path) -> None:
@@ -280,26 +413,6 @@ def _ros1_fields(header: IO[bytes]) -> dict[bytes, bytes]:
         name, _, value = field.partition(b"=")
         fields[name] = value
     return fields
-
-
-def _chunk(file: IO[bytes], start: int) -> _Piece:
-    *_, declared, _ = unpack("<QQQI", file.read(28))
-    codec = _word(file)
-    (size,) = unpack("<Q", file.read(8))
-    return _Piece(start + 40 + len(codec), size, codec, declared)
-
-
-def _indexed(record: IO[bytes]) -> _Piece:
-    *_, chunk, _ = unpack("<QQQQ", record.read(32))
-    _word(record)  # where the messages of each topic begin
-    record.read(8)
-    codec = _word(record)
-    size, declared = unpack("<QQ", record.read(16))
-    return _Piece(chunk + 9 + 40 + len(codec), size, codec, declared)
-
-
-def _word(record: IO[bytes]) -> str:
-    return _part(record).decode("latin-1")
 
 
 def _part(record: IO[bytes]) -> bytes:

@@ -77,6 +77,9 @@ def meaning_of(
             factors[quantity] = step if times is None else step * float(parse_number(times, "1", "scale"))
             continue
         where = f'{table.source}: {quantity} in column "{column}"'
+        likely = table.likely.get(column) if quantity == "position" and not isinstance(times, str) else None
+        if likely and stated[quantity] is None:
+            raise InputError(f'{where} has no unit: {likely}; state it with units={{"position": "deg"}}')
         factors[quantity] = _factor(where, quantity, stated[quantity], times, turning)
     return Meaning(
         columns=columns, factors=factors, motion="rotary" if turning else "linear", resolution=step
@@ -341,7 +344,9 @@ _BRACKETS = re.compile(r"^(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\)|\s/\s*(\S+))\s*
 _VECTOR = re.compile(r"(force|torque|velocity|linear|angular|acceleration|orientation)[./][xyzw]$")
 """Components of what is no position, in a message."""
 
-_INDEX = re.compile(r"\[\d+\]$")
+_PLACE = re.compile(r"^(.*\S)\[([^\[\]]*)\]$")
+"""Behind a list in a message or a matrix which of it is meant, by number or by name: "q[0]", "q[elbow]"."""
+
 _AGAIN = re.compile(r" \(\d+\)$")
 """Behind a name that stands there more than once, see `layout`: it may be meant as the first one may."""
 
@@ -375,7 +380,10 @@ def recognise(
 def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
     """The word and the unit in a column's name: "position_mm" is "position" and "mm"."""
     column = _AGAIN.sub("", column)
-    bare = _INDEX.sub("", column.strip())
+    bare = column.strip()
+    placed = _PLACE.match(bare)
+    if placed is not None and (placed[2].isdigit() or bare.startswith("/") or not is_unit(placed[2])):
+        bare = placed[1]
     bracketed = _BRACKETS.match(bare) if bare == column.strip() else None
     if bracketed is not None:
         unit = next(g for g in bracketed.groups()[1:] if g is not None).strip()

@@ -27,13 +27,13 @@ def read_log(
     motion: Motion | None = None,
     sheet: str | None = None,
 ) -> Log:
-    """A log from a file: text, workbook, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, telemetry, what
-    zwidth wrote.
+    """A log from a file: text, workbook, Parquet, NetCDF, HDF5, MATLAB, NumPy, MCAP, ROS bags, telemetry,
+    what zwidth wrote.
 
     Parameters
     ----------
     path
-        The file, or the directory of a rosbag2.
+        The file, or the folder of a rosbag2 or of a LeRobot dataset.
     columns
         The column of each of time, position, hand_force and actuator_force, where its name is not recognised:
         {"position": "enc_left"}; None leaves one out: {"hand_force": None}.
@@ -135,10 +135,14 @@ def log_of(
 def table_of_file(path: Path, sheet: str | None = None) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load."""
     if path.is_dir() and not (path / "metadata.yaml").is_file():
-        if (path / "meta" / "info.json").is_file() and (episodes := sorted(path.glob("data/*/*.parquet"))):
+        from zwidth.data.logs.parquet import dataset_files, parquet_table
+
+        files = dataset_files(path)
+        if len(files) == 1:
+            return parquet_table(files[0])
+        if files:
             raise InputError(
-                f"{path} is a LeRobot dataset with {len(episodes)} file(s); name one of them, such as "
-                f"{episodes[0]}"
+                f"{path} is a LeRobot dataset with {len(files)} files; name one of them, such as {files[0]}"
             )
         raise InputError(
             f"{path} is a directory, and no rosbag2: there is no metadata.yaml in it; name a file"
@@ -160,6 +164,10 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         from zwidth.data.logs.scientific import hdf5_table
 
         return hdf5_table(path)
+    if start[:6] == b"\x93NUMPY":
+        from zwidth.data.logs.scientific import numpy_table
+
+        return numpy_table(path)
     if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
         from zwidth.data.logs.scientific import matlab_table
 
@@ -191,6 +199,10 @@ def _in_archive(path: Path, sheet: str | None) -> Table:
         from zwidth.data.logs.workbook import workbook_table
 
         return workbook_table(path, sheet)
+    if kind == "arrays":
+        from zwidth.data.logs.scientific import numpy_table
+
+        return numpy_table(path)
     said = {
         "binary": "a binary workbook; save it as an ordinary .xlsx, or the sheet as CSV",
         "open document": "an OpenDocument spreadsheet; save it as .xlsx, or the sheet as CSV",

@@ -1,15 +1,22 @@
-"""Files of scientific programs: HDF5 (NetCDF 4, MATLAB 7.3) by path and slice, older MATLAB files whole."""
+"""Files of scientific programs: HDF5 (NetCDF 4, MATLAB 7.3) by path and slice; older MATLAB files whole, and
+those of NumPy, of which nothing is read that is pickled."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterator, Mapping
+from io import BytesIO
+from math import prod
 from pathlib import Path
 from struct import unpack
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
+from zipfile import ZipFile, is_zipfile
 
 import numpy as np
+from numpy.lib import format as npy
 
-from zwidth.data.logs.table import MOST_COLUMNS, PIECE, Table, Values, check_lengths, in_pieces
+from zwidth.data.logs.columns import is_unit, name_and_unit
+from zwidth.data.logs.table import MOST_COLUMNS, PIECE, Finding, Table, Values, check_lengths, in_pieces
 from zwidth.errors import InputError
 from zwidth.reading import FREE, RATIO, check_dataset, check_expansion, inflated
 
@@ -36,7 +43,13 @@ def hdf5_table(path: Path) -> Table:
         attributes = {key: _plain(value) for key, value in file.attrs.items()}
 
         def visit(name: str, item: Any) -> None:
-            if isinstance(item, h5py.Dataset) and not name.startswith("#"):
+            if not isinstance(item, h5py.Dataset) or name.startswith("#"):
+                return
+            if h5py.check_ref_dtype(item.dtype) is h5py.Reference and item.size <= MOST_COLUMNS:
+                for k, leads in enumerate(np.ravel(item[()])):  # structures in a list, as MATLAB 7.3 has them
+                    if leads and isinstance(file[leads], h5py.Dataset):
+                        columns.update(_columns(f"{name}[{k}]", file[leads]))
+            else:
                 columns.update(_columns(name, item))
 
         file.visititems(visit)
@@ -52,22 +65,24 @@ def _columns(name: str, data: h5py.Dataset) -> dict[str, _Column]:
     """The columns in a dataset: itself, its fields, or the columns of a matrix."""
     unit = next((_plain(data.attrs[k]) for k in ("units", "unit", "Units", "Unit") if k in data.attrs), None)
     unit = unit if isinstance(unit, str) else None
+    where = str(data.name)
     packing = tuple(_number(data, k) for k in ("scale_factor", "add_offset", "_FillValue"))
     about = (1.0 if packing[0] is None else packing[0], packing[1] or 0.0, packing[2])
     if data.dtype.names and len(data.shape) == 1:
         fields = [f for f in data.dtype.names if data.dtype[f].kind in "fiu"]
-        return {f"{name}.{f}": _Column(name, data.shape[0], None, f, about) for f in fields}
-    if data.dtype.kind not in "fiu" or len(data.shape) not in (1, 2) or 0 in data.shape:
+        return {f"{name}.{f}": _Column(where, data.shape[0], None, f, about) for f in fields}
+    text = data.attrs.get("MATLAB_class") == b"char"
+    if text or data.dtype.kind not in "fiu" or len(data.shape) not in (1, 2) or 0 in data.shape:
         return {}
     if len(data.shape) == 1:
-        return {name: _Column(name, data.shape[0], unit, None, about)}
+        return {name: _Column(where, data.shape[0], unit, None, about)}
     rows, width = data.shape
     upright = width <= min(rows, MOST_COLUMNS)
     count, length = (width, rows) if upright else (rows, width)
     if count > MOST_COLUMNS:
         return {}
     return {
-        name if count == 1 else f"{name}[{k}]": _Column(name, length, unit, (upright, k), about)
+        name if count == 1 else f"{name}[{k}]": _Column(where, length, unit, (upright, k), about)
         for k in range(count)
     }
 
@@ -137,6 +152,7 @@ _PIECE = 2**20
 def matlab_table(path: Path) -> Table:
     """The vectors in a file of MATLAB 4 to 7.2, structures included."""
     from scipy.io import loadmat
+    from scipy.io.matlab import MatlabOpaque
 
     size = path.stat().st_size
     if size > LARGEST:
@@ -145,16 +161,67 @@ def matlab_table(path: Path) -> Table:
             'save it with "-v7.3"'
         )
     check_expansion(path, _expanded(path))
-    columns: dict[str, Values] = {}
-    for name, value in loadmat(path, squeeze_me=True, struct_as_record=False).items():
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        variables = loadmat(path, squeeze_me=True, struct_as_record=False)
+    columns: dict[str, _Vector] = {}
+    for name, value in variables.items():
         if not name.startswith("__"):
             columns.update(_vectors(name, value))
+    if not columns and any(isinstance(v, MatlabOpaque) for v in variables.values()):
+        raise InputError(
+            f"{path} holds objects, such as a timeseries or a Dataset, that MATLAB alone reads; in it: "
+            "t = out.logsout{1}.Values.Time; position = out.logsout{1}.Values.Data; "
+            "save('log.mat', 't', 'position', '-v7')"
+        )
+    table = _held(path, columns)
+    table.notes.update(
+        (text, Finding(kind="file", text=text)) for text in (_first_line(each) for each in said)
+    )
+    return table
 
+
+def _first_line(warning: warnings.WarningMessage) -> str:
+    """What scipy says of a file, without what it advises programmers to do."""
+    return str(warning.message).splitlines()[0].split(" Consider ")[0]
+
+
+def _held(path: Path, columns: Mapping[str, _Vector]) -> Table:
+    """The table of vectors that are in memory."""
     return Table(
         source=str(path),
-        units=dict.fromkeys(columns),
-        read=lambda names: in_pieces(str(path), columns, names),
+        units={name: unit for name, (_, unit) in columns.items()},
+        read=lambda names: in_pieces(str(path), {name: columns[name][0] for name in names}, names),
     )
+
+
+def numpy_table(path: Path) -> Table:
+    """The vectors in a file of NumPy: one array, or an archive of named ones."""
+    columns: dict[str, _Vector] = {}
+    if is_zipfile(path):
+        with ZipFile(path) as archive:
+            members = archive.infolist()
+            check_expansion(path, sum(member.file_size for member in members))
+            for member in members:
+                name = member.filename.removesuffix(".npy")
+                columns.update(_vectors(name, _array(path, archive.read(member))))
+    else:
+        columns = _vectors("data", _array(path, path.read_bytes()))
+    return _held(path, columns)
+
+
+def _array(path: Path, data: bytes) -> Values:
+    """What the bytes of a .npy file are, which may be fewer than its head says."""
+    stream = BytesIO(data)
+    version = npy.read_magic(stream)
+    head = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+    shape, by_columns, kind = head(stream)
+    if kind.hasobject:
+        raise InputError(
+            f"{path} holds pickled objects of Python, which are not read; save arrays of numbers"
+        )
+    values = np.frombuffer(data, kind, prod(shape), stream.tell())
+    return values.reshape(shape, order="F" if by_columns else "C")
 
 
 def _expanded(path: Path) -> int:
@@ -183,18 +250,45 @@ def _pieces(file: IO[bytes], size: int) -> Iterator[bytes]:
         yield piece
 
 
-def _vectors(name: str, value: Any) -> dict[str, Values]:
-    """Vectors in a variable: itself, the columns of a matrix, or what its fields hold."""
+_Vector = tuple[Values, str | None]
+"""Numbers, and their unit if it is stated."""
+
+
+def _vectors(name: str, value: Any) -> dict[str, _Vector]:
+    """The vectors in a variable: itself, columns of a matrix, what fields hold; of a list each one's."""
     if hasattr(value, "_fieldnames"):  # a structure of scipy's
         parts = [_vectors(f"{name}.{field}", getattr(value, field)) for field in value._fieldnames]
-        return {key: vector for part in parts for key, vector in part.items()}
+        found = {key: vector for part in parts for key, vector in part.items()}
+        if hasattr(value, "signals") and f"{name}.time" in found:  # of Simulink, whose clock counts seconds
+            found[f"{name}.time"] = (found[f"{name}.time"][0], "s")
+        return found | _labelled(name, value, found)
     array = np.asarray(value)
-    if array.dtype.kind not in "fiu" or array.ndim not in (1, 2) or array.size < 2:
+    if array.dtype.names and array.size > 1:
+        parts = [_vectors(f"{name}.{field}", array[field]) for field in array.dtype.names]
+        return {key: vector for part in parts for key, vector in part.items()}
+    if array.dtype.kind == "O" and array.ndim == 1 and array.size <= MOST_COLUMNS:
+        parts = [_vectors(f"{name}[{k}]", each) for k, each in enumerate(array)]
+        return {key: vector for part in parts for key, vector in part.items()}
+    if array.dtype.kind not in "fiuMm" or array.ndim not in (1, 2) or array.size < 2:
         return {}
+    unit = None
+    if array.dtype.kind in "Mm":  # dates, durations
+        unit, array = "ns", array.astype(f"{array.dtype.kind}8[ns]")
+        array = array.astype(np.int64) if array.dtype.kind == "m" else array
     if array.ndim == 1:
-        return {name: array}
+        return {name: (array, unit)}
     if array.shape[1] > min(array.shape[0], MOST_COLUMNS):
         array = array.T
     if array.shape[1] > MOST_COLUMNS:
         return {}
-    return {f"{name}[{k}]": array[:, k] for k in range(array.shape[1])}
+    return {f"{name}[{k}]": (array[:, k], unit) for k in range(array.shape[1])}
+
+
+def _labelled(name: str, signal: Any, found: Mapping[str, _Vector]) -> dict[str, _Vector]:
+    """The values of a signal of Simulink by its label too, "scope.signals[0].handle position (m)"."""
+    label = getattr(signal, "label", None)
+    if not isinstance(label, str) or not label.strip() or f"{name}.values" not in found:
+        return {}
+    values, unit = found[f"{name}.values"][0], name_and_unit(label, "position")[1]
+    stated = unit if unit is not None and is_unit(unit) else None
+    return {f"{name}.values": (values, stated), f"{name}.{label.strip()}": (values, stated)}

@@ -1,4 +1,4 @@
-"""A recording in MCAP, read from its first byte on as far as it is whole.
+"""Files of MCAP, of a served loop or of others, from their first byte on as far as they are whole.
 
 The index at the end of a file is not used: a file that was cut off has none.  Chunks stand one after the
 other, each with its checksum; the first that is not there as a whole ends what is read.  Layout:
@@ -7,7 +7,9 @@ https://mcap.dev/spec; a row is a message in CDR whose numbers are all float64.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+import re
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from struct import Struct, error, unpack, unpack_from
 from typing import IO, Any, NamedTuple
@@ -19,7 +21,7 @@ import pyarrow as pa
 from zwidth.data.logs.contents import COLUMNS, Head, Part, from_json, head_in, rows_lost
 from zwidth.data.logs.table import PIECE, Finding, Table, Values
 from zwidth.errors import InputError
-from zwidth.reading import check_chunk, check_expansion
+from zwidth.reading import LARGEST_CHUNK, check_chunk, check_expansion
 
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
@@ -33,6 +35,10 @@ MESSAGE_HEAD = Struct("<HIQQ")
 
 CHUNK_HEAD = Struct("<QQQI")
 """Times of the first and of the last message, bytes when expanded, their checksum."""
+
+INSTALL = "reading ROS bags and MCAP takes a library that is not installed: pip install 'zwidth[logs]'"
+ZSTD = b"\x28\xb5\x2f\xfd"
+"""What begins so is compressed."""
 
 CDR = b"\x00\x01\x00\x00"
 """Before each message: little-endian."""
@@ -52,7 +58,7 @@ class _Record(NamedTuple):
 def mcap_head(path: Path) -> Head | None:
     """What a recording says of itself; None for an MCAP of others."""
     with open(path, "rb") as file:
-        for record in _records(file, path):
+        for record in records(file, path):
             if record.kind == METADATA:
                 name, said = _metadata(record.content)
                 if name == HEAD:
@@ -72,7 +78,7 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
     following: int | None = None
     promised: dict[str, str] = {}
     with open(path, "rb") as file:
-        for record in _records(file, path):
+        for record in records(file, path):
             if record.kind == CHANNEL:
                 _note_channel(record.content, topics)
             elif record.kind == METADATA:
@@ -80,7 +86,7 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
                 if name == END:
                     promised = said
             elif record.kind == CHUNK:
-                data = _unpacked(record.content, path)
+                data = unpacked(record.content, path)
                 if data is None:
                     return
                 expanded += len(data)
@@ -98,7 +104,7 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
         yield Part(np.empty((0, len(head.columns))), [], last=True)
 
 
-def _records(file: IO[bytes], path: Path) -> Iterator[_Record]:
+def records(file: IO[bytes], path: Path) -> Iterator[_Record]:
     """Whole records, one after the other."""
     if file.read(len(MAGIC)) != MAGIC:
         return
@@ -116,19 +122,19 @@ def _records(file: IO[bytes], path: Path) -> Iterator[_Record]:
 def _metadata(content: bytes) -> tuple[str, dict[str, str]]:
     """Name and texts of a metadata record; no texts where it is none."""
     try:
-        name, place = _text(content, 0)
+        name, place = text_at(content, 0)
         (size,) = unpack_from("<I", content, place)
         place, end = place + 4, place + 4 + size
         said = {}
         while place < end:
-            key, place = _text(content, place)
-            said[key], place = _text(content, place)
+            key, place = text_at(content, place)
+            said[key], place = text_at(content, place)
     except (error, UnicodeDecodeError):
         return "", {}
     return name, said
 
 
-def _text(content: bytes, place: int) -> tuple[str, int]:
+def text_at(content: bytes, place: int) -> tuple[str, int]:
     (size,) = unpack_from("<I", content, place)
     end = place + 4 + size
     return content[place + 4 : end].decode(), end
@@ -137,16 +143,16 @@ def _text(content: bytes, place: int) -> tuple[str, int]:
 def _note_channel(content: bytes, topics: dict[int, str]) -> None:
     try:
         number, _ = unpack_from("<HH", content)
-        topics[number] = _text(content, 4)[0]
+        topics[number] = text_at(content, 4)[0]
     except (error, UnicodeDecodeError):
         return
 
 
-def _unpacked(content: bytes, path: Path) -> bytes | None:
+def unpacked(content: bytes, path: Path) -> bytes | None:
     """What a chunk expands to; None where its bytes are not those that were written."""
     try:
         _, _, size, checksum = CHUNK_HEAD.unpack_from(content)
-        codec, place = _text(content, CHUNK_HEAD.size)
+        codec, place = text_at(content, CHUNK_HEAD.size)
         (packed,) = unpack_from("<Q", content, place)
     except (error, UnicodeDecodeError):
         return None
@@ -292,3 +298,139 @@ def _with_gaps(rows: Any, head: Head) -> Any:
         rows = rows.copy()
         rows[silent, head.columns.index(COLUMNS[head.motion][0])] = np.nan
     return rows
+
+
+# MCAP, from its first byte on: the index at the end is not needed, which a file that was cut off has not.
+
+
+class Topic(NamedTuple):
+    """A topic, and what its messages are: their encoding, their type, how it is defined, the definition."""
+
+    topic: str
+    msgtype: tuple[str, str, str, bytes]
+
+
+class Mcap:
+    """Files of MCAP that follow each other, read as rosbags' reader is."""
+
+    readers = ()
+
+    def __init__(self, path: Path, files: list[Path]) -> None:
+        self.path, self.files = path, files
+        self.connections: list[Topic] = []
+        self.unread: dict[str, str] = {}
+        self.lost, self.cut = 0, False
+        self._decoders: dict[Any, Callable[[bytes], Any] | None] = {}
+
+    def __enter__(self) -> Mcap:
+        if not self.connections:
+            for _ in self.messages():
+                pass
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+    def deserialize(self, data: bytes, msgtype: Any) -> Any:
+        """The message in these bytes."""
+        decoder = self._decoders[msgtype]
+        assert decoder is not None
+        return decoder(data)
+
+    def messages(self, connections: Collection[Topic] = ()) -> Iterator[tuple[Topic, int, bytes]]:
+        """Every message of some topics, or of all that can be read: [ns] when it was recorded, its bytes."""
+        self.lost, self.cut = 0, False
+        for file in self.files:
+            schemas: dict[int, tuple[str, str, bytes]] = {}
+            channels: dict[int, Topic | None] = {}
+            for kind, content in self._records(file):
+                if kind == MESSAGE:
+                    number, _, recorded, _ = MESSAGE_HEAD.unpack_from(content)
+                    channel = channels.get(number)
+                    if channel is not None and (not connections or channel in connections):
+                        yield channel, recorded, self._plain(bytes(content[MESSAGE_HEAD.size :]))
+                elif kind == SCHEMA:
+                    name, place = text_at(bytes(content), 2)
+                    form, place = text_at(bytes(content), place)
+                    schemas[unpack_from("<H", content)[0]] = (name, form, bytes(content[place + 4 :]))
+                elif kind == CHANNEL:
+                    number, schema = unpack_from("<HH", content)
+                    topic, place = text_at(bytes(content), 4)
+                    encoding, _ = text_at(bytes(content), place)
+                    about = (encoding, *schemas.get(schema, ("", "", b"")))
+                    channels[number] = self._known(Topic(topic, about))
+
+    def _records(self, file: Path) -> Iterator[tuple[int, Any]]:
+        """Those in the whole chunks and beside them, up to the end of what was recorded."""
+        expanded, end = 0, len(MAGIC)
+        with open(file, "rb") as opened:
+            for record in records(opened, file):
+                end = opened.tell()
+                if record.kind in (DATA_END, FOOTER):
+                    return
+                if record.kind != CHUNK:
+                    yield record
+                    continue
+                data = unpacked(record.content, file)
+                if data is None:
+                    self.lost += len(record.content)
+                    continue
+                expanded += len(data)
+                check_expansion(file, expanded)
+                yield from _in_order(data)
+        self.cut = True
+        self.lost += max(0, file.stat().st_size - end)
+
+    def _known(self, channel: Topic) -> Topic | None:
+        """The channel if its messages can be read."""
+        encoding = channel.msgtype[0]
+        if channel.msgtype not in self._decoders:
+            self._decoders[channel.msgtype] = (
+                json.loads if encoding == "json" else self._of_ros(*channel.msgtype)
+            )
+        if self._decoders[channel.msgtype] is None:
+            self.unread[channel.topic] = encoding or "none"
+            return None
+        if channel not in self.connections:
+            self.connections.append(channel)
+        return channel
+
+    def _of_ros(self, encoding: str, name: str, form: str, text: bytes) -> Callable[[bytes], Any] | None:
+        if encoding not in ("cdr", "ros1"):
+            return None
+        try:
+            from rosbags import typesys
+        except ImportError:
+            raise InputError(f"{self.path} cannot be read: {INSTALL}") from None
+        store = typesys.get_typestore(typesys.Stores.EMPTY if text else typesys.Stores.LATEST)
+        try:
+            if form.endswith("idl"):
+                parts = re.split(r"^=+\n(?:IDL: .*\n)?", text.decode(), flags=re.MULTILINE)
+                for part in filter(str.strip, parts):
+                    store.register(typesys.get_types_from_idl(part))
+            elif text:
+                store.register(typesys.get_types_from_msg(text.decode(), name))
+        except typesys.TypesysError:  # one topic of many
+            return None
+        full = name if "/msg/" in name else name.replace("/", "/msg/")
+        read = store.deserialize_cdr if encoding == "cdr" else store.deserialize_ros1
+        return lambda data: read(data, full)
+
+    def _plain(self, data: bytes) -> bytes:
+        """A message that is compressed by itself, expanded: none begins so otherwise."""
+        if not data.startswith(ZSTD):
+            return data
+        with pa.CompressedInputStream(pa.BufferReader(data), "zstd") as stream:
+            whole = bytes(stream.read(LARGEST_CHUNK + 1))
+        check_chunk(self.path, len(whole))
+        return whole
+
+
+def _in_order(data: bytes) -> list[tuple[int, memoryview]]:
+    """The records in a chunk, messages by when they were recorded."""
+    found, place, view = [], 0, memoryview(data)
+    while place < len(data):
+        kind, size = RECORD.unpack_from(data, place)
+        place += RECORD.size + size
+        found.append((kind, view[place - size : place]))
+    return sorted(found, key=lambda each: unpack_from("<Q", each[1], 6)[0] if each[0] == MESSAGE else 0)

@@ -45,6 +45,8 @@ class Table:
     means: Mapping[str, str | None] = field(default_factory=dict)
     """The column of each quantity, None where there is none, if the format says which: nobody guesses
     then."""
+    likely: Mapping[str, str] = field(default_factory=dict)
+    """What a unit that nobody states may be, in words, of a column of which the format lets one guess."""
     sheet: str = ""
     """Name of the sheet of a workbook; else ""."""
     sheets: tuple[Table, ...] = ()

@@ -178,7 +178,7 @@ _NOT_READ = re.compile(
 _MAIN = re.compile(rb"<(?:\w+:)?Override\b[^>]*\bspreadsheetml\.sheet\.main\+xml[^>]*>")
 _PART = re.compile(rb'PartName\s*=\s*["\']/?([^"\']*)["\']')
 
-Kind = Literal["workbook", "binary", "open document", "other"]
+Kind = Literal["workbook", "binary", "open document", "other", "arrays"]
 
 
 def kind_of_archive(path: Path) -> Kind:
@@ -191,6 +191,8 @@ def kind_of_archive(path: Path) -> Kind:
             with archive.open("mimetype") as file:
                 spreadsheet = file.read(60).startswith(b"application/vnd.oasis.opendocument.spreadsheet")
             return "open document" if spreadsheet else "other"
+        if names and all(name.endswith(".npy") for name in names):
+            return "arrays"
         return "workbook" if any(_SHEET.fullmatch(name) for name in names) else "other"
 
 

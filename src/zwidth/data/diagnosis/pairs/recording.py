@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.diagnosis.recording import Recording, read_of_table
-from zwidth.data.logs.columns import recognise
+from zwidth.data.diagnosis.recording import COMMANDED, Recording, read_of_table, without_effort
+from zwidth.data.logs.columns import recognise, role_of_force
 from zwidth.data.logs.read import opened
-from zwidth.data.logs.table import Table, Values, in_pieces
+from zwidth.data.logs.table import Table, Values, in_pieces, listed
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -90,11 +90,25 @@ def _both(table: Table, columns: Mapping[str, str | None], *told: Any) -> PairRe
             f"{table.source}: there are no columns of a leader and of a follower; say which with "
             'columns={"leader_position": …} and so on, or name them so'
         )
-    original, chosen = _of_arm(table, "leader", columns)
+    sides = [_of_arm(table, arm, columns) for arm in ARMS]
+    if not any(map(_has_force, sides)):
+        raise InputError(
+            f"{table.source}: no column is known to be a force of either arm, and without it nobody can say "
+            'where the energy of a vibration comes from; say which with columns={"leader_actuator_force": …} '
+            'and columns={"follower_actuator_force": …}, or with commanded_force for what a law asks for; '
+            "there are "
+            f"{listed(table.units)}{without_effort(table.units)}"
+        )
+    original, chosen = sides[0]
     named = {**chosen, "hand_force": None, "actuator_force": None}
     named.pop("commanded_force", None)
     clock = original[recognise(dict.fromkeys(original), named, table.source)["position"]]
     return _paired(*(_arm(table, arm, clock, columns, *told) for arm in ARMS))
+
+
+def _has_force(side: tuple[dict[str, str], dict[str, str | None]]) -> bool:
+    columns, chosen = side
+    return any(chosen.get(role) for role in (COMMANDED, "actuator_force")) or any(map(role_of_force, columns))
 
 
 def _of_both(names: list[str], columns: Mapping[str, str | None] | None) -> bool:
@@ -147,8 +161,8 @@ def _arm(
         raise InputError(f"the {arm}: {text}") from None
 
 
-_NO_COLUMN = re.compile(r'(?<=columns=\{")(?=\w+": …)')
-"""Where a message asks for a column that the arm does not have."""
+_NO_COLUMN = re.compile(r'(?<=columns=\{")(?=\w+": […"])')
+"""Where a message asks for a column of the arm."""
 
 
 def _own(given: Mapping[str, Any], arm: str, other: str) -> dict[str, Any]:
