@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
@@ -54,6 +55,16 @@ def page(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
     yield opened
     opened.close()
     assert not complaints
+
+
+def complaints_of_access(page: Page) -> list[dict[str, Any]]:
+    """What axe finds: people read it by keyboard, ear and little contrast."""
+    try:
+        from axe_playwright_python.sync_playwright import Axe
+    except UnicodeDecodeError:
+        pytest.skip("the package of axe reads its own script in the encoding of the locale, which has no ©")
+    found: list[dict[str, Any]] = Axe().run(page).response["violations"]
+    return found
 
 
 def _near(url: str) -> bool:

@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import re
+import sys
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -209,7 +210,7 @@ def test_a_file_cannot_command_the_terminal(tmp_path, capsys):
 def test_the_name_of_a_file_cannot_command_the_terminal(options, trace, tmp_path, capsys, monkeypatch):
     """A trace is called by it, in the table and in JSON, where it can be read back."""
     monkeypatch.chdir(tmp_path)
-    name = "\x1b[2J\x7f\x9btouch.nc"
+    name = "\x1b[2J\x7f\x9btouch.nc" if sys.getfilesystemencoding() == "utf-8" else "\x1b[2J\x7ftouch.nc"
     trace.zwidth.save(name)
     assert main(["traces", name, *options]) == 0
     printed = capsys.readouterr().out

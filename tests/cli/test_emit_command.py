@@ -81,9 +81,9 @@ def test_where_the_files_go(run, refused):
     run(f"{PADDLE} -o wall")
     Path("wall/law.h").write_text("mine")
     assert "exists" in refused(f"{PADDLE} -o wall")
-    assert Path("wall/law.h").read_text() == "mine"
+    assert Path("wall/law.h").read_text(encoding="utf-8") == "mine"
     run(f"{PADDLE} -o wall --force")
-    assert Path("wall/law.h").read_text() != "mine"
+    assert Path("wall/law.h").read_text(encoding="utf-8") != "mine"
 
 
 def test_a_changed_certificate_is_noticed(run):

@@ -8,8 +8,7 @@ from pathlib import Path
 from urllib.parse import parse_qsl, urlsplit
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
-from browser import PATIENCE, WIDE
+from browser import PATIENCE, WIDE, complaints_of_access
 from playwright.sync_api import Browser, Locator, Page, expect
 
 import zwidth as zw
@@ -197,6 +196,6 @@ def test_nothing_is_wider_than_the_screen_and_everybody_can_use_it(page: Page, a
         assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
         for scheme in SCHEMES.get(tab.text_content() or "", ()):
             page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-            found = Axe().run(page).response["violations"]
+            found = complaints_of_access(page)
             bad = [v for v in found if v["impact"] in ("serious", "critical")]
             assert not bad, [(v["id"], [n["html"] for n in v["nodes"]]) for v in bad]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
+from browser import complaints_of_access
 from playwright.sync_api import Page
 
 
@@ -22,7 +22,7 @@ def test_nothing_stands_in_the_way_of_a_reader(page: Page, address: str) -> None
     assert page.evaluate("[...document.images].every(i => i.complete && i.naturalWidth > 100)")
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
-        found = Axe().run(page).response["violations"]
+        found = complaints_of_access(page)
         assert not [(one["id"], one["impact"]) for one in found], scheme
 
 

@@ -44,7 +44,7 @@ def test_csv_is_read_by_numpy_and_parquet_by_pyarrow(dowel, tmp_path: Path) -> N
 
     dowel.zwidth.save(tmp_path / "t.csv")
     dowel.zwidth.save(tmp_path / "t.parquet")
-    table = np.genfromtxt(tmp_path / "t.csv", delimiter=",", names=True, skip_header=1)
+    table = np.genfromtxt(tmp_path / "t.csv", encoding="utf-8", delimiter=",", names=True, skip_header=1)
     assert (table["position_m"] == dowel.position.values).all()
     assert (pq.read_table(tmp_path / "t.parquet")["position_m"].to_numpy() == dowel.position.values).all()
 

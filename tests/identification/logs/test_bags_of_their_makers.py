@@ -61,21 +61,40 @@ def test_mcap_by_its_own_library(
 
 
 @pytest.mark.parametrize(
-    ("compression", "chunked"), [(None, True), (None, False), ("Lz4", True), ("Zstd", True)]
+    ("encoding", "profile", "compression", "chunked"),
+    [
+        ("cdr", "ros2", None, True),
+        ("cdr", "ros2", None, False),
+        ("cdr", "ros2", "Lz4", True),
+        ("cdr", "ros2", "Zstd", True),
+        ("cdr", None, "Zstd", True),
+        ("json", None, None, False),
+        ("json", None, "Zstd", True),
+    ],
 )
 def test_mcap_by_foxglove(
-    compression: str | None, chunked: bool, recording: Recording, tmp_path: Path
+    encoding: str,
+    profile: str | None,
+    compression: str | None,
+    chunked: bool,
+    recording: Recording,
+    tmp_path: Path,
 ) -> None:
+    """Of ROS 2 whether the file says so or not; and JSON, its default."""
     schema = foxglove.Schema(name=NAME, encoding="ros2msg", data=DEFINITION.encode())
     context = foxglove.Context()
-    topic = foxglove.Channel(TOPIC, schema=schema, message_encoding="cdr", context=context)
+    topic = foxglove.Channel(
+        TOPIC, schema=schema if encoding == "cdr" else None, message_encoding=encoding, context=context
+    )
     options = foxglove.mcap.MCAPWriteOptions(
-        profile="ros2",
+        profile=profile,
         chunk_size=9000,
         use_chunks=chunked,
         compression=compression and getattr(foxglove.mcap.MCAPCompression, compression),
     )
+    said = zip(*recording, strict=True)
     with foxglove.open_mcap(tmp_path / "run.mcap", context=context, writer_options=options):
-        for stamp, data in messages(recording, 2):
-            topic.log(data, log_time=stamp)
+        for (stamp, data), (_, x, f) in zip(messages(recording, 2), said, strict=True):
+            numbers = {"position_m": float(x), "hand_force_N": float(f)}
+            topic.log(data if encoding == "cdr" else numbers, log_time=stamp)
     assert_same(zw.read_log(tmp_path / "run.mcap"), recording)

@@ -39,7 +39,7 @@
 #define TIMEOUT 100000000 /* [ns] without a sample, after which the second thread ends the force */
 #endif
 
-enum { SECOND = 1000000000, PERIOD = (int64_t)(1e9 * LAW_SAMPLE_PERIOD_S + 0.5), CHUNK = 512 };
+enum { SECOND = 1000000000, PERIOD = (int64_t)(1e9 * LAW_SAMPLE_PERIOD_S + 0.5), CHUNK = 512, STACK = 262144 };
 
 static volatile sig_atomic_t asked;
 static volatile sig_atomic_t beats; /* samples that were begun, as far as this type counts */
@@ -98,7 +98,12 @@ static void become_punctual(int priority) {
 
 /* Start the second thread, above the loop where that has a priority: it must run where the loop never sleeps. */
 static int start_watch(pthread_t *watcher, int priority) {
-  if (pthread_create(watcher, NULL, watch, NULL) != 0) {
+  pthread_attr_t small; /* the usual stack of 8 MiB would have to be locked whole: more than a user may (ulimit -l) */
+  pthread_attr_init(&small);
+  pthread_attr_setstacksize(&small, STACK);
+  const int refused = pthread_create(watcher, &small, watch, NULL);
+  pthread_attr_destroy(&small);
+  if (refused != 0) {
     return -1;
   }
   if (priority > 0) {
