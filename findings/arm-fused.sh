@@ -5,9 +5,11 @@
 #   -std=gnu99 (and no -std)              vmul, vfma: one rounding less
 #   -std=c99                              vmul, vmul, vadd
 #   -std=gnu99 -ffp-contract=off          vmul, vmul, vadd
-# Where it bites: what is sent to the motor is not what the same C gave on a PC (x86-64 has no such instruction by default), so a
-# comparison bit by bit fails; and k*x - b*v need not be 0 where the two products are equal, since only one of them is rounded.
-# Instead: -ffp-contract=off where bits count, or fmaf() written out where it is wanted; the dialect alone is a poor switch.
+# Where it bites: what is sent to the motor is not what the same C gave on a PC (x86-64 has no such
+# instruction by default), so a comparison bit by bit fails; and k*x - b*v need not be 0 where the two
+# products are equal, since only one of them is rounded.
+# Instead: -ffp-contract=off where bits count, or fmaf() written out where it is wanted; the dialect alone is
+# a poor switch.
 set -euo pipefail
 command -v arm-none-eabi-gcc >/dev/null || { echo "arm-none-eabi-gcc is not there: install gcc-arm-none-eabi" >&2; exit 1; }
 work=$(mktemp -d)

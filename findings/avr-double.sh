@@ -7,8 +7,9 @@
 #   1.0 + 5e-8 == 1.0                     true: 7 digits
 #   -mdouble=64                           refused as unknown (it came with GCC 10)
 # and nothing is said, with -Wall -Wextra.
-# Where it bites: micros() / 1e6 has steps of 1 µs only in the first 16 s; after half an hour they are 0.12 ms, an eighth of a 1 kHz
-# period. A law that was tried in double on a PC is another one here: energy counters stop growing at 2^24 of their smallest step.
+# Where it bites: micros() / 1e6 has steps of 1 µs only in the first 16 s; after half an hour they are 0.12
+# ms, an eighth of a 1 kHz period. A law that was tried in double on a PC is another one here: energy counters
+# stop growing at 2^24 of their smallest step.
 # Instead: keep time and position as integers and convert differences; try the law in float on the PC.
 set -euo pipefail
 command -v avr-gcc >/dev/null || { echo "avr-gcc is not there: install the package gcc-avr" >&2; exit 1; }

@@ -5,8 +5,9 @@
 #   Torque_FF 32.767 N*m   sent
 #   Torque_FF 32.768 N*m   OverflowError of Python, with strict=False, too; it is no cantools.Error
 #   Torque_FF NaN          ValueError of Python; Input_Pos, a float signal, takes NaN without a word
-# Where it bites: a loop that guards its sending with "except cantools.Error" ends at the first torque that is too great, with the
-# motor still under its last command; with another package (moteus) the same torque would have been cut off at the end.
+# Where it bites: a loop that guards its sending with "except cantools.Error" ends at the first torque that is
+# too great, with the motor still under its last command; with another package (moteus) the same torque would
+# have been cut off at the end.
 # Instead: clamp to ±32.767 and test for finite numbers before encode, and command zero from a finally.
 set -euo pipefail
 work=$(mktemp -d)

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # feetech-servo-sdk 1.0.0: the byte order is one for the whole process, that of the packet handler that was made last.
 #
-# STS and SMS servos send the low byte first (PacketHandler(0)), SCS servos the high byte (PacketHandler(1)). Seen, of an STS servo
-# at position 111, read through its own handler:
+# STS and SMS servos send the low byte first (PacketHandler(0)), SCS servos the high byte (PacketHandler(1)).
+# Seen, of an STS servo at position 111, read through its own handler:
 #   111 before a second handler is made, 28416 (0x6F00) after PacketHandler(1) was made for another bus
-# Where it bites: an arm of STS servos with a gripper of the SCS series: positions jump by the factor 256, and torques that are
-# written, too. The object that you hold is not what decides.
-# Instead: one kind of servo in a process, or call SCS_SETEND before every exchange, with a lock where there are threads.
+# Where it bites: an arm of STS servos with a gripper of the SCS series: positions jump by the factor 256, and
+# torques that are written, too. The object that you hold is not what decides.
+# Instead: one kind of servo in a process, or call SCS_SETEND before every exchange, with a lock where there
+# are threads.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # foxglove-sdk 0.30.3: what Channel.log writes as "json" is not JSON as soon as a number is not finite.
 #
-# A dictionary with NaN (the usual mark of a missing reading) and infinity (the usual "no limit"). Seen in the MCAP file:
+# A dictionary with NaN (the usual mark of a missing reading) and infinity (the usual "no limit"). Seen in the
+# MCAP file:
 #   b'{"force": NaN, "limit": Infinity}'    on a channel with message_encoding "json"
 #   Python's json reads it back; orjson 3.11.4, which keeps to the standard as browsers do, refuses it
 #   a float32 of NumPy raises TypeError, a float64 does not
-# Where it bites: one missing reading makes that message unreadable for every strict reader, while the program that wrote it reads
-# its own file without complaint; sensors' drivers that give float32 end the loop.
-# Instead: None (null) for what is missing, leave out a limit that is not there, float() around what comes from NumPy.
+# Where it bites: one missing reading makes that message unreadable for every strict reader, while the program
+# that wrote it reads its own file without complaint; sensors' drivers that give float32 end the loop.
+# Instead: None (null) for what is missing, leave out a limit that is not there, float() around what comes
+# from NumPy.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -7,10 +7,10 @@
 #   NonSeekingReader(file).iter_messages()                      0 messages, EndOfFile with no text
 #   NonSeekingReader(file).iter_messages(log_time_order=False)  all 56 315 messages, then EndOfFile
 # The second sorts by time and so wants to see the end before it gives the first message.
-# Where it bites: a log that was cut off looks empty or damaged, though every whole chunk is sound; and the message that is printed
-# speaks of a record's length, not of a missing end.
-# Instead: for a file without the closing magic use NonSeekingReader in the order of the file, keep what came before EndOfFile, and
-# say how much that is.
+# Where it bites: a log that was cut off looks empty or damaged, though every whole chunk is sound; and the
+# message that is printed speaks of a record's length, not of a missing end.
+# Instead: for a file without the closing magic use NonSeekingReader in the order of the file, keep what came
+# before EndOfFile, and say how much that is.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

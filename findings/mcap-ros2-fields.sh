@@ -5,8 +5,8 @@
 #   {"position": [0.1], "torque": [2.5]}   written; read back as effort []
 #   Wrench with {"force": {"X": 1.5}}      written; read back as force.x 0.0
 #   a NumPy array as position              ValueError: it "is not an array"
-# Where it bites: a recording of ten minutes in which every force is 0 or missing, found when it is analysed. The one mistake that is
-# told (an array of NumPy) is the one that does no harm.
+# Where it bites: a recording of ten minutes in which every force is 0 or missing, found when it is analysed.
+# The one mistake that is told (an array of NumPy) is the one that does no harm.
 # Instead: compare the dictionary's keys with the definition once per topic, or read the first message back.
 set -euo pipefail
 work=$(mktemp -d)

@@ -5,10 +5,11 @@
 #   default               nothing but 42 bytes of start for more than 12 s, then half a megabyte at once
 #   chunk_size=64 KiB      written for the first time before 1.0 s has gone by
 #   use_chunking=False     written at each message
-# Where it bites: a recording that ends with the power, a kill or an emergency stop has lost its last seconds, which are the ones
-# that it was made for; below 12 s it holds nothing. Slow topics make it worse: the chunk counts bytes, not time.
-# Instead: a chunk_size of what you can bear to lose (rate x size of a message x seconds), finish() in a finally, and a flush of the
-# file itself where there is one.
+# Where it bites: a recording that ends with the power, a kill or an emergency stop has lost its last seconds,
+# which are the ones that it was made for; below 12 s it holds nothing. Slow topics make it worse: the chunk
+# counts bytes, not time.
+# Instead: a chunk_size of what you can bear to lose (rate x size of a message x seconds), finish() in a
+# finally, and a flush of the file itself where there is one.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -8,9 +8,11 @@
 #   position 3.5 turns                 32767: 3.2767 turns is the end, to either side
 #   kp_scale 1.5                       32767, which is 1.0
 #   maximum_torque infinity            -32768, the code of NaN: "use the one that is configured"
-# Where it bites: INT16 halves the frame, which tempts at 1 kHz and more. A force law then loses up to a step towards zero, always
-# (a weaker spring, a dead band), and a handle that has turned more than 3.27 turns is told to go back.
-# Instead: F32 (the default) for position and torque; round to whole steps yourself; keep the zero of the position near.
+# Where it bites: INT16 halves the frame, which tempts at 1 kHz and more. A force law then loses up to a step
+# towards zero, always (a weaker spring, a dead band), and a handle that has turned more than 3.27 turns is
+# told to go back.
+# Instead: F32 (the default) for position and torque; round to whole steps yourself; keep the zero of the
+# position near.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -6,8 +6,9 @@
 #   --specs=nano.specs                            time_ms=12,force=,velocity=,state=7
 #   --specs=nano.specs -u _printf_float           as newlib
 # Neither compiler nor linker says a word, with -Wall -Wextra.
-# Where it bites: nano.specs is what projects for small chips are made with. Lines of a serial log still have all commas, so they are
-# read as a table with an empty column; "missing" is then filled up or dropped by what reads it.
+# Where it bites: nano.specs is what projects for small chips are made with. Lines of a serial log still have
+# all commas, so they are read as a table with an empty column; "missing" is then filled up or dropped by what
+# reads it.
 # Instead: -u _printf_float (some kB), or send integers (force in mN, velocity in µm/s).
 set -euo pipefail
 for tool in arm-none-eabi-gcc qemu-system-arm; do

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # npTDMS 1.13.0: as_dataframe lays channels of different rates side by side, row by row.
 #
-# One TDMS file, force at 10 kHz (wf_increment 0.1 ms) and position at 1 kHz (1 ms), both from the same start. Seen:
+# One TDMS file, force at 10 kHz (wf_increment 0.1 ms) and position at 1 kHz (1 ms), both from the same start.
+# Seen:
 #   as_dataframe()                  row 2 holds the force of 0.2 ms and the position of 2 ms; the shorter one is filled up with NaN
 #   as_dataframe(time_index=True)   the right times, with NaN wherever the other channel has a sample
-# Where it bites: force over position of a log of two rates is a picture of nothing: the stiffness fitted is a tenth, and after
-# dropna() not even the NaN are left to warn.
+# Where it bites: force over position of a log of two rates is a picture of nothing: the stiffness fitted is a
+# tenth, and after dropna() not even the NaN are left to warn.
 # Instead: channel.time_track() for each channel, and interpolation onto one of the two.
 set -euo pipefail
 work=$(mktemp -d)

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # A column of durations in Parquet (pyarrow 26.0.1): three readers, three meanings of the same file.
 #
-# Stamps 0, 0.4 and 0.8 ms, once as duration[us] and once as duration[ns]. Parquet itself has no durations: the unit stands only in
-# the note that Arrow leaves beside the schema. Seen:
+# Stamps 0, 0.4 and 0.8 ms, once as duration[us] and once as duration[ns]. Parquet itself has no durations:
+# the unit stands only in the note that Arrow leaves beside the schema. Seen:
 #   pandas 3.1.1         timedelta64[us] and timedelta64[ns]; astype("int64") is 0, 400, 800 and 0, 400000, 800000, so the common
 #                        astype("int64") / 1e9 makes 0.4 µs of 0.4 ms in the first file and is right in the second
 #   DuckDB 2.0.1         BIGINT 0, 400, 800: no unit, no word
 #   fastparquet 2026.9.0 int64, the same
 # Where it bites: a sample period wrong by 1000, and with it every velocity and damping that is identified.
-# Instead: store time as float64 seconds with the unit in the name (time_s); in pandas use .dt.total_seconds().
+# Instead: store time as float64 seconds with the unit in the name (time_s); in pandas use
+# .dt.total_seconds().
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

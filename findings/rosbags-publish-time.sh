@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # rosbags 0.11.9 and mcap 1.6.0: a conversion from MCAP to MCAP loses when a message was sent.
 #
-# MCAP gives each message two times and a number: publish_time (sent), log_time (received by the recorder), sequence. rosbags knows
-# one time, the second. Seen, of three messages after rosbags.convert:
+# MCAP gives each message two times and a number: publish_time (sent), log_time (received by the recorder),
+# sequence. rosbags knows one time, the second. Seen, of three messages after rosbags.convert:
 #   log_time      1000, 1010, 1020   as before
 #   publish_time  1000, 1010, 1020   was 900, 913, 920
 #   sequence      0, 0, 0            was 1, 2, 4: that one was lost on the way can no longer be seen
-# Where it bites: the sample period and the delay of a loop are in publish_time; log_time has the recorder's queue in it. After a
-# filter or a merge with this tool the jitter seen is the recorder's, and the delay between the two is 0.
-# Instead: take times and gaps from the file as recorded, or from header.stamp, and convert only what is played back.
+# Where it bites: the sample period and the delay of a loop are in publish_time; log_time has the recorder's
+# queue in it. After a filter or a merge with this tool the jitter seen is the recorder's, and the delay
+# between the two is 0.
+# Instead: take times and gaps from the file as recorded, or from header.stamp, and convert only what is
+# played back.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -5,10 +5,11 @@
 #   65531  in a Dynamixel's present current (two's complement)
 #   1029   in a Feetech STS's present load (sign in bit 10)
 #   32773  in a Feetech STS's present position or speed (sign in bit 15)
-# Feetech's own SCS_TOHOST puts the sign right only with the bit of that register; with the wrong one it says nothing: load 1029
-# read with bit 15 stays 1029, speed 32773 read with bit 10 stays 32773. Dynamixel's package has no function for it at all.
-# Where it bites: just left of zero a spring is given a position of eight turns, or a current of the full scale; code ported from
-# one maker to the other runs without an error and is right on one side of zero.
+# Feetech's own SCS_TOHOST puts the sign right only with the bit of that register; with the wrong one it says
+# nothing: load 1029 read with bit 15 stays 1029, speed 32773 read with bit 10 stays 32773. Dynamixel's
+# package has no function for it at all.
+# Where it bites: just left of zero a spring is given a position of eight turns, or a current of the full
+# scale; code ported from one maker to the other runs without an error and is right on one side of zero.
 # Instead: a table of registers with width and way of the sign, and a test with -1 for each of them.
 set -euo pipefail
 work=$(mktemp -d)

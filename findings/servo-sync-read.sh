@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # A sync read in which one servo of three is silent: dynamixel-sdk 4.1.0 and feetech-servo-sdk 1.0.0.
 #
-# Servos 1, 2, 3 answer 100, 200, 300; in the next cycle they hold 111, 222, 333 and servo 2 says nothing. Seen:
+# Servos 1, 2, 3 answer 100, 200, 300; in the next cycle they hold 111, 222, 333 and servo 2 says nothing.
+# Seen:
 #   dynamixel-sdk      result -3001, getData 0, 0, 0: the answer of servo 1, which came, is hidden, too
 #   feetech-servo-sdk  result -6, getData 111, 0, 300: servo 1 is new, servo 2 is 0, servo 3 is the OLD value, and
 #                      isAvailable says True of it
 #   both               the call comes back after 34 ms or more (2 x 16 ms + 2 ms, fixed in the code), whatever the baud rate
-# Where it bites: a 0 is a valid position, so a spring pulls to it with all its force; an old position is a loop that runs late;
-# and for 34 ms the motors hold the last torque, which is 34 samples of a 1 kHz loop.
-# Instead: look at the result of txRxPacket before any getData; after a failure use none of its values and send zero force; make
-# packet_timeout short with a port handler of your own.
+# Where it bites: a 0 is a valid position, so a spring pulls to it with all its force; an old position is a
+# loop that runs late; and for 34 ms the motors hold the last torque, which is 34 samples of a 1 kHz loop.
+# Instead: look at the result of txRxPacket before any getData; after a failure use none of its values and
+# send zero force; make packet_timeout short with a port handler of your own.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # A second torque given to a sync write is not sent: dynamixel-sdk 4.1.0 and feetech-servo-sdk 1.0.0.
 #
-# In a loop: group.addParam(servo, torque), group.txPacket(). Seen, with 100 in the first cycle and 0 in the second:
+# In a loop: group.addParam(servo, torque), group.txPacket(). Seen, with 100 in the first cycle and 0 in the
+# second:
 #   addParam comes back True, then False; txPacket says success both times; both packets on the wire carry 100
 # addParam refuses a servo that is in the group already, and its answer is easily passed over.
-# Where it bites: the servo keeps its first torque for ever, and a "zero on exit" sent the same way is not sent.
-# Instead: changeParam from the second cycle on, or clearParam after every txPacket, and look at what both give back.
+# Where it bites: the servo keeps its first torque for ever, and a "zero on exit" sent the same way is not
+# sent.
+# Instead: changeParam from the second cycle on, or clearParam after every txPacket, and look at what both
+# give back.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
