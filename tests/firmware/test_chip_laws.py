@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from firmware.baselines.read import touch
-from firmware.chip_laws import DEVICE, LAWS, emitted
+from firmware.chip_laws import DEVICE, LAWS, TRAVEL, emitted
 from firmware.emulated import cortex
 from firmware.emulated.avr import AvrLaw
 from firmware.emulated.host import HostLaw, watched
@@ -103,3 +103,25 @@ def test_it_is_the_loop_of_simulate(rate: int, delay: str) -> None:
         assert np.array_equal(ours, trace[theirs].values)
     assert motion.command.max() == 9
     assert motion.extracted == trace.zwidth.energy.got_out
+
+
+@pytest.mark.parametrize("stiffness", [150, 770], ids=["quiet", "buzz"])
+@pytest.mark.parametrize(("chip", "number"), [("avr", "fixed"), ("cortex-m4", "float")])
+def test_ten_thousand_samples_of_a_touch(tmp_path: Path, chip: str, number: str, stiffness: int) -> None:
+    """One loop, motion and energy to the last bit: what the chip answers to each reading is what moved it."""
+    require(chip)
+    header = emit(DEVICE, zw.Wall(stiffness), number=number, travel=TRAVEL, anyway=True).text
+    law = HostLaw(header, tmp_path)
+    moved = closed(DEVICE, HAND, 10.0, law.force, law.init)
+    assert moved.counts.size == 10_001
+    first = int(moved.counts[0])
+    if chip == "cortex-m4":  # all readings at once: as long as its forces are the same, so is the loop
+        answers = cortex.run(header, moved.counts, first)
+        law.init(first)
+        assert answers.forces.tobytes() == law.run(moved.counts).tobytes()
+        return
+    with AvrLaw(header) as avr:
+        there = closed(DEVICE, HAND, 10.0, avr.force, avr.init)
+    for ours, theirs in zip(vars(there).values(), vars(moved).values(), strict=True):
+        assert ours.tobytes() == theirs.tobytes()
+    assert (there.extracted > 0.01) == (stiffness == 770)
