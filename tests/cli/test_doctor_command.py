@@ -54,7 +54,7 @@ def test_a_device_alone_has_a_spring(doctor):
 def test_an_environment_comes_from_options_or_a_file(doctor):
     """The same wall by both roads costs the same, and another than a spring does."""
     wall = '[environment]\ntype = "wall"\nstiffness = 10\nvirtual_damping = 0.04\n'
-    Path("wall.toml").write_text(wall)
+    Path("wall.toml").write_text(wall, encoding="utf-8")
     asked = ("--stiffness 10 --virtual-damping 0.04", "wall.toml", "")
     costs = [json.loads(doctor(f"haptic-paddle {more} --json")[1])["cost"] for more in asked]
     assert costs[0] == costs[1]
@@ -68,8 +68,8 @@ def test_what_is_saved_is_what_is_printed(doctor, refused):
     """As JSON and as a picture; neither is replaced unasked."""
     told = doctor("--duration 1 -o found.json --plot late.svg")[1]
     assert "written: found.json" in told
-    assert json.loads(Path("found.json").read_text())["format"] == "zwidth doctor 1"
-    assert Path("late.svg").read_text().startswith("<?xml")
+    assert json.loads(Path("found.json").read_text(encoding="utf-8"))["format"] == "zwidth doctor 1"
+    assert Path("late.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert "exists" in refused("doctor -o found.json")
 
 

@@ -75,11 +75,11 @@ def test_the_report_as_json(run):
 
 def test_where_the_files_go(run, refused):
     assert "-o DIRECTORY" in refused(PADDLE)
-    Path("file").write_text("mine")
+    Path("file").write_text("mine", encoding="utf-8")
     assert "exists and is no directory" in refused(f"{PADDLE} -o file")
     assert "cannot be made" in refused(f"{PADDLE} -o file/below")
     run(f"{PADDLE} -o wall")
-    Path("wall/law.h").write_text("mine")
+    Path("wall/law.h").write_text("mine", encoding="utf-8")
     assert "exists" in refused(f"{PADDLE} -o wall")
     assert Path("wall/law.h").read_text(encoding="utf-8") == "mine"
     run(f"{PADDLE} -o wall --force")

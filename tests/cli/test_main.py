@@ -93,8 +93,10 @@ def test_negative_values_are_values(run):
 
 
 def test_two_files(run):
-    Path("wheel.toml").write_text('[device]\ninertia = 0.05\ndamping = 0.2\nrate = "1 kHz"\n')
-    Path("stop.toml").write_text('[environment]\ntype = "wall"\nstiffness = 400\n')
+    Path("wheel.toml").write_text(
+        '[device]\ninertia = 0.05\ndamping = 0.2\nrate = "1 kHz"\n', encoding="utf-8"
+    )
+    Path("stop.toml").write_text('[environment]\ntype = "wall"\nstiffness = 400\n', encoding="utf-8")
     assert "wheel: b = 0.2 N·m·s/rad" in run("check wheel.toml stop.toml").out
     run("check wheel.toml stop.toml --stiffness 500", 1)
 
@@ -121,7 +123,7 @@ def test_a_saved_verdict_is_verified(run, line, status):
 
 def test_an_existing_file_is_not_lost(run, refused):
     path = Path("verdict.json")
-    path.write_text("mine")
+    path.write_text("mine", encoding="utf-8")
     assert "exists" in refused(f"{PASSIVE} --save verdict.json")
     assert path.read_text(encoding="utf-8") == "mine"
     run(f"{PASSIVE} --save verdict.json --force")
@@ -144,7 +146,7 @@ def test_the_schema_of_a_kind_is_printed(run, kind):
     "content", ["", "{", "[]", "3", "{}", '{"outcome": "passive"}', "\x00", "[" * 100_000]
 )
 def test_what_cannot_be_read_is_bad_input(refused, content):
-    Path("broken.json").write_text(content)
+    Path("broken.json").write_text(content, encoding="utf-8")
     refused("verify broken.json")
 
 

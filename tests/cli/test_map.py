@@ -79,7 +79,7 @@ def test_certificates_of_the_columns(run, refused):
     assert len(document["corners"]) == int(found["passive"].any(dim="stiffness").sum())
     assert "is passive, proved" in run("verify walls.json").words
     document["corners"][-1]["loop"]["damping_N_s_per_m"] = "0.05"
-    Path("walls.json").write_text(json.dumps(document))
+    Path("walls.json").write_text(json.dumps(document), encoding="utf-8")
     run("verify walls.json", 1)
 
 

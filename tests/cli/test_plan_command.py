@@ -23,6 +23,7 @@ def test_a_file_of_a_device_in_intervals_is_a_guess(run):
     """What `zwidth identify -o` writes can be planned with."""
     Path("mine.toml").write_text(
         "[device]\nmass = [0.03, 0.04]\ndamping = [0.1, 0.2]\ncoulomb_friction = [0.11, 0.13]\n"
-        "resolution = 2.24e-05\nsample_period = 0.001\n"
+        "resolution = 2.24e-05\nsample_period = 0.001\n",
+        encoding="utf-8",
     )
     assert "To know b within" in run("plan mine.toml --force-noise 0.1").out

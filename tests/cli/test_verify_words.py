@@ -46,7 +46,7 @@ def told(run):
     """What is printed of a document, in one line: of one that is valid unless another status is given."""
 
     def runner(document, status=0):
-        Path("proof.json").write_text(json.dumps(document))
+        Path("proof.json").write_text(json.dumps(document), encoding="utf-8")
         return run("verify proof.json", status).words
 
     return runner

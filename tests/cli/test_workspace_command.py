@@ -110,7 +110,7 @@ def test_a_description_from_the_command_line(run):
     tip = '<joint name="tip" type="fixed"><parent link="c"/><child link="d"/><origin xyz="0.1 0 0"/></joint>'
     links = "".join(f'<link name="{name}"/>' for name in "abcd")
     joints = joint.format("first", "a", "b", 0) + joint.format("second", "b", "c", 0.1) + tip
-    Path("arm.urdf").write_text(f'<robot name="arm">{links}{joints}</robot>')
+    Path("arm.urdf").write_text(f'<robot name="arm">{links}{joints}</robot>', encoding="utf-8")
     words = run("workspace arm.urdf --stiffness 200 --hold second=0.5 --points 10 --frame d").words
     assert "second held at 0.5" in words
 
@@ -149,7 +149,7 @@ def test_the_proof_of_a_wall_in_pose_is_verified(rest, run, six):
     assert "0.4]] in N, m, rad" in words
     document = json.loads(Path("proof.json").read_text(encoding="utf-8"))
     document["certificate"]["wall"]["stiffness_N_m_rad"][5][5] = "4000"
-    Path("more.json").write_text(json.dumps(document))
+    Path("more.json").write_text(json.dumps(document), encoding="utf-8")
     assert run("verify more.json", None).status != 0
 
 
@@ -158,7 +158,7 @@ def test_a_wall_by_matrices(run, six):
 
     def write():
         rows_written = ", ".join(f"[{', '.join(row)}]" for row in rows)
-        Path("wall.toml").write_text(f"[wall]\nstiffness = [{rows_written}]")
+        Path("wall.toml").write_text(f"[wall]\nstiffness = [{rows_written}]", encoding="utf-8")
 
     units = ['"4 N/mm"'] * 3 + ['"40 N*m/rad"'] * 3
     rows = [["0"] * i + [unit] + ["0"] * (5 - i) for i, unit in enumerate(units)]
@@ -186,7 +186,7 @@ def test_a_wall_by_matrices(run, six):
     ],
 )
 def test_a_file_that_is_no_wall(refused, text, words):
-    Path("wall.toml").write_text(text)
+    Path("wall.toml").write_text(text, encoding="utf-8")
     assert re.search(words, refused(f"workspace {CHAIN} --wall wall.toml"))
 
 

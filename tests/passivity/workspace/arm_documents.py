@@ -171,7 +171,7 @@ def described(path: Path, joints: list[tuple[str, str, str, str, float]], holder
     hand = f'<parent link="{holder}"/><child link="tip"/><origin xyz="{end}"/>'
     parts.append(f'<joint name="t" type="fixed">{hand}</joint>')
     links = "".join(f'<link name="{n}"/>' for n in [*(f"l{i}" for i in range(len(joints) + 1)), "tip"])
-    path.write_text(f'<robot name="arm">{links}{"".join(parts)}</robot>')
+    path.write_text(f'<robot name="arm">{links}{"".join(parts)}</robot>', encoding="utf-8")
     return path
 
 
