@@ -185,6 +185,7 @@ def test_dampers_of_ratios_and_of_crisp(tmp_path):
     ("text", "message"),
     [
         ("a: {type: x/Y}", "no gains of a controller"),
+        ("a: {ros__parameters: {Jn: [1], Kp: [900]}}", "disturbance observers"),
         ("gazebo_ros_control: {pid_gains: {j: {p: 1}}}", "Gazebo simulates"),
         ("a: {ros__parameters: {admittance: {mass_x: 1}, task: {k_pos_x: 1}}}", "of an admittance"),
         (TASK.replace("task", "use_operational_space: true\n    task"), "multiplied by the arm's mass"),

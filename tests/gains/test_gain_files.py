@@ -186,6 +186,7 @@ def test_yaml_json_and_toml_are_the_same(tmp_path):
         (GRIPPER, "a gripper alone"),
         (CALIBRATION, "a LeRobot calibration .* position_p_coefficient"),
         (openarm(Jn=[0.5] * 8), "disturbance observers"),  # whose Kp is no stiffness
+        ("Node: {ros__parameters: {Jn: [0.5], Kp: [900]}}\n", "disturbance observers"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_refused_in_a_line(tmp_path, text, said):

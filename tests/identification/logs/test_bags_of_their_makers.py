@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from struct import pack, unpack_from
 
 import foxglove
 import pytest
@@ -40,6 +41,17 @@ def test_ros_1_by_rosbags(compression: str, recording: Recording, tmp_path: Path
         for stamp, data in messages(recording, 1):
             writer.write(topic, stamp, data)
     assert_same(zw.read_log(tmp_path / "run.bag"), recording)
+    if compression == "NONE":
+        assert_same(zw.read_log(_with_a_gap(tmp_path / "run.bag")), recording)
+
+
+def _with_a_gap(path: Path) -> Path:
+    """Zero bytes before the index, as a bag has that was gone on with."""
+    whole = path.read_bytes()
+    at = whole.index(key := b"index_pos=") + len(key)
+    (tail,) = unpack_from("<Q", whole, at)
+    path.write_bytes(whole[:at] + pack("<Q", tail + 49) + whole[at + 8 : tail] + bytes(49) + whole[tail:])
+    return path
 
 
 @pytest.mark.parametrize(

@@ -133,6 +133,13 @@ def test_another_table_is_left_out_and_said(tmp_path):
     assert [f.text for f in found.findings] == ["rows 44 to 47 of the sheet are another table and left out"]
 
 
+def test_a_sheet_of_results_of_which_each_row_begins_with_a_name_is_passed_over(tmp_path):
+    names = [(None, "Probe", "Fmax", "dL"), (None, None, "N", "mm")]
+    results = [*names, *[(f"A{k}", f"A{k}", 1.5 + k, 4.0) for k in range(9)]]
+    (found,) = read_tests(book(tmp_path / "a.xlsx", Ergebnisse=results, A0=[*HEAD, *ROWS]))
+    is_the_test(found)
+
+
 def test_formulas_are_what_was_kept_of_them(tmp_path):
     """As the program that wrote the file computed them; without a result there is nothing to read."""
     path = book(tmp_path / "a.xlsx", a=[*HEAD, *[(t, f"={f}*1", x) for t, f, x in ROWS]])

@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from zwidth.data.gains.families import refuse_observers
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
 from zwidth.model.arms.wall import MatrixWall
@@ -223,6 +224,8 @@ def read_controllers(path: str | Path) -> Controllers:
                 others.append(str(error))
             seen.append(inner.keys)
     if not joints and not cartesian:
+        for inner in table.below():
+            refuse_observers(inner)
         raise InputError(
             others[0]
             if others

@@ -344,7 +344,8 @@ def read_openarm(tables: Sequence[GainTable]) -> ArmGains:
     return ArmGains(OPENARM, joints, tuple(notes), drives=not bilateral)
 
 
-def _gains(table: GainTable) -> list[Gains]:
+def refuse_observers(table: GainTable) -> None:
+    """Of a law whose Kp is no spring."""
     for key in _OBSERVER:
         if key in table:
             raise InputError(
@@ -352,6 +353,10 @@ def _gains(table: GainTable) -> list[Gains]:
                 "openarm_bilateral): its Kp and Kd are per unit of inertia, and no spring and damper joins "
                 "the arms; not decided here"
             )
+
+
+def _gains(table: GainTable) -> list[Gains]:
+    refuse_observers(table)
     stiffness = table.numbers("Kp", "N*m/rad")
     count = len(stiffness)
     damping = table.numbers("Kd", "N*m*s/rad", count)

@@ -132,6 +132,8 @@ def _known(family: str, tables: list[GainTable]) -> str:
 
 def _nothing(table: GainTable, family: str | None) -> InputError:
     """Says what a file is that has no gains of a family, or of any."""
+    for inner in table.below():
+        families.refuse_observers(inner)
     if any("homing_offset" in inner for inner in table.below()):
         return InputError(
             f"{table.label}: a LeRobot calibration (homing_offset, range_min, range_max), which holds no "

@@ -330,7 +330,7 @@ def _nearest(wanted: NDArray[Any], stamps: NDArray[Any], values: NDArray[Any]) -
 
 
 _CODECS = ("lz4", "bz2")
-_ROS1_START, _ROS1_CHUNK, _ROS1_INDEX = 13, b"\x05", b"\x06"
+_ROS1_START, _ROS1_HEADER, _ROS1_CHUNK, _ROS1_INDEX = 13, b"\x03", b"\x05", b"\x06"
 _STEP = 2**20
 
 
@@ -393,11 +393,16 @@ def _ros1_pieces(file: IO[bytes], end: int) -> tuple[dict[int, _Piece], set[int]
     """The pieces by where their records begin, and where the index says that they do."""
     pieces: dict[int, _Piece] = {}
     index: set[int] = set()
-    place = _ROS1_START
+    place, tail = _ROS1_START, 0
     while place + 8 <= end:
         file.seek(place)
         fields = _ros1_fields(BytesIO(_part(file)))
         (size,) = unpack("<I", file.read(4))
+        if fields.get(b"op") == _ROS1_HEADER:
+            (tail,) = unpack("<Q", fields[b"index_pos"])
+        if b"op" not in fields and place < tail:  # a bag gone on with may have a gap where its index was
+            place = tail
+            continue
         if fields.get(b"op") == _ROS1_CHUNK:
             (declared,) = unpack("<I", fields[b"size"])
             pieces[place] = _Piece(file.tell(), size, fields[b"compression"].decode("latin-1"), declared)

@@ -299,7 +299,7 @@ def _header(
     if head := next((line for line in reversed(plain) if line.startswith(LABVIEW + delimiter)), ""):
         return _of_labview(head, plain, delimiter, filled)
     columns = len(filled)
-    fewest = columns - filled[::-1].index(True)
+    fewest = columns - filled[::-1].index(True) if any(filled) else 0
 
     def fields_of(line: str) -> list[str] | None:
         for fields in _ways_to_split(line, delimiter):
