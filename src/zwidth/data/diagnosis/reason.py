@@ -190,6 +190,9 @@ _REGULAR_ENOUGH = 0.7
 _IRREGULAR = {"velocity-weakening friction": 0.4, "differenced velocity": -np.inf, "encoder buzz": -np.inf}
 """The same of what jumps: between counts, from sample to sample, or where it sticks."""
 
+_WANDERS = 5.0
+"""Times the frequency, as far as it is known: what jumps now and then has none."""
+
 _ANOTHER_UNIT = 100.0
 _GAIN = 1.3
 _ALIKE = 1e-2
@@ -212,7 +215,8 @@ def doubt(cause: str, seen: Evidence) -> str | None:
         )
     if vibration.growth < _DIES:
         return "a stretch in which it goes on: in this one it dies out by itself"
-    if vibration.regular_by_chance < _IRREGULAR.get(cause, _REGULAR_ENOUGH):
+    uneven = vibration.frequency_spread > _WANDERS * vibration.frequency
+    if uneven or vibration.regular_by_chance < _IRREGULAR.get(cause, _REGULAR_ENOUGH):
         return "a stretch in which it goes to and fro evenly: in this one it is more noise than vibration"
     d = seen.drive
     if d is not None and _is_multiple(d):

@@ -27,6 +27,12 @@ LOWEST = 1.5
 SLOWEST = 0.4
 """[Hz] of a regular one."""
 
+QUICK = 12.0
+"""[Hz] of a buzz in a part of a recording in which a hand moves: that motion is a drift to it."""
+
+_IN_A_PART = 97.0
+"""Percentile of the size of what shakes in a thirtieth of the recording or more."""
+
 _EDGE = 1.25
 """Times the lower end of a search, below which its drift eats the motion: the other may see it better."""
 
@@ -81,8 +87,8 @@ class Vibration:
 def find(position: Array, period: float) -> Vibration | None:
     """The stretch that vibrates; None where nothing goes to and fro often enough.
 
-    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and must
-    itself be so.
+    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and a quick
+    one under the motion of a hand; each must itself be regular.
     """
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
@@ -97,6 +103,10 @@ def find(position: Array, period: float) -> Vibration | None:
             )
         ):
             return slow
+    if found is None or found.regular < _IRREGULAR:
+        quick = _above(QUICK, position, period, _IN_A_PART)
+        if quick is not None and quick.regular > _REGULAR:
+            return quick
     return found
 
 
@@ -110,11 +120,11 @@ def nothing(time: Array) -> str:
     )
 
 
-def _above(lowest: float, position: Array, period: float) -> Vibration | None:
+def _above(lowest: float, position: Array, period: float, large: float = 75.0) -> Vibration | None:
     """The vibration of no less than so many hertz."""
     slower = LOWEST / lowest
     moving = position - _drift(position, period, _DRIFT * slower)
-    rows = _stretch(moving, period, _BLOCK * slower)
+    rows = _stretch(moving, period, _BLOCK * slower, large)
     if rows.stop - rows.start < 16:
         return None
     y = _without_line(position[rows])
@@ -232,15 +242,15 @@ def _mean(padded: Array, half: int) -> Array:
     return np.asarray((total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1))
 
 
-def _stretch(moving: Array, period: float, block: float) -> slice:
-    """The longest stretch whose blocks stay above a third of the size of the large ones; the later of
-    equals."""
+def _stretch(moving: Array, period: float, block: float, large: float) -> slice:
+    """The longest stretch whose blocks stay above a third of the size of the large ones, at that percentile;
+    the later of equals."""
     size = max(8, round(block / period))
     blocks = moving.size // size
     if blocks < 3:
         return slice(0, moving.size)
     rms = moving[: blocks * size].reshape(blocks, size).std(axis=1)
-    strong = rms > np.percentile(rms, 75) / 3
+    strong = rms > np.percentile(rms, large) / 3
     best, start = (0, 0), None
     for k, on in enumerate([*strong, False]):
         if on and start is None:

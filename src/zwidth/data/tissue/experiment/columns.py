@@ -159,7 +159,10 @@ def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[
             f"{table.source}: {listed(candidates)} may each be the {quantity}; say which with "
             f'columns={{"{quantity}": "{candidates[0]}"}}'
         )
-    others = [_candidates(table, other, list(table.units)) for other in QUANTITIES[1:]]
+    others = [
+        [chosen[other]] if other in chosen else _candidates(table, other, list(table.units))
+        for other in QUANTITIES[1:]
+    ]
     if not candidates and quantity == "time" and all(others):
         raise InputError(
             f"{table.source}: a table of load against depth, {listed([names[0] for names in others])}, "
