@@ -73,7 +73,7 @@ class Question:
         damping: npt.NDArray[np.float64] = as_matrix(arm.damping) - held * np.eye(arm.joint_count)
         if arm.joint_count > coordinates and np.linalg.eigvalsh(damping)[0] <= 0:
             bare = [str(k + 1) for k, own in enumerate(np.diag(damping)) if own <= 0]
-            where = f"; joint {', '.join(bare)} has none left" if bare else ""
+            where = f"; none is left in joint {', '.join(bare)}" if bare else ""
             raise InputError(
                 "an arm with more joints than coordinates needs damping in each of them, beyond what held "
                 f"torques ask for{where}: give --joint-damping, joint_damping in Python"
