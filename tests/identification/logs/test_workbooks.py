@@ -109,7 +109,7 @@ def test_several_sheets_are_trials_and_one_may_be_named(tmp_path):
     assert second.time.size == 35
     assert [f.text for f in first.findings if f.kind == "sheet"] == ['read is the sheet "Probe1" of 4']
     assert [found.time.size for found in read_tests(path, sheet="probe2")] == [35]
-    for sheet, message in (("Probe3", 'did you mean "Probe'), ("Ergebnisse", "known to be the time")):
+    for sheet, message in (("Probe3", 'did you mean "Probe'), ("Ergebnisse", "without time")):
         with pytest.raises(zw.InputError, match=message):
             read_tests(path, sheet=sheet)
     with pytest.raises(zw.InputError, match=r"each hold a recording.*sheet=\"Probe1\""):

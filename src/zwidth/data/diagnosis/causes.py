@@ -46,13 +46,11 @@ class Cause:
     """One reason for a vibration."""
 
     name: str
-    """In a few words."""
     because: str
     """What happens, for people."""
     shown: Callable[[Evidence], bool]
     """Whether this recording can show it at all."""
     evidence: Callable[[Evidence], Iterator[str]]
-    """The numbers that speak for it."""
     record: str
     """What to record where it is likely and not shown."""
 
@@ -399,7 +397,6 @@ CAUSES: Mapping[str, Cause] = {
         ),
     )
 }
-"""The registry of causes."""
 
 
 def features(seen: Evidence) -> dict[str, float]:

@@ -47,7 +47,6 @@ TERMS = (
     "drive damping",
     "actuator limit",
 )
-"""The terms of the energy that goes in."""
 
 _ALIKE = 2e-3
 """Share of the applied force's variance by which it may differ from the command and be the same."""
@@ -97,7 +96,6 @@ class Evidence:
     resolution: float
     """[m; rad] Δ; 0 where none is seen."""
     law: Law | None
-    """What the force was computed from; None where it does not follow the motion."""
     drive: Drive | None
     """What lies between the two forces; None where one was recorded."""
     amplitude: float
@@ -118,11 +116,8 @@ class Evidence:
     standing: float
     """Share of the time in which it stands, where a sine does so for a sixteenth."""
     distortion: float
-    """Harmonics of the motion against its frequency."""
     roles: tuple[str, ...]
-    """Which forces the file holds: "commanded", "applied", or both."""
     known: Known
-    """The device's numbers."""
     rotary: bool
     """Of a wheel, a knob, a joint."""
     moves_as: complex | None

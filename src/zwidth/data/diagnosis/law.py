@@ -48,8 +48,6 @@ _COMBINATIONS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Law:
-    """What the force was computed from."""
-
     stiffness: float
     damping: float
     """K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad]."""

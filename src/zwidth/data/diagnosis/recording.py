@@ -45,9 +45,7 @@ class Recording:
     """One run without a gap, in SI units."""
 
     source: str
-    """Name of the file, or "arrays"."""
     motion: Motion
-    """"linear" or "rotary"."""
     period: float
     """[s] between two rows; the loop's own sample period may be another."""
     resolution: float

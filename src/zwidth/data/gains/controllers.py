@@ -249,7 +249,6 @@ def read_controllers(path: str | Path) -> Controllers:
 
 
 def is_of_controllers(table: GainTable) -> bool:
-    """True for a parameter file of ROS, or with gains of one of its controllers."""
     return next(_controllers(table), None) is not None or any(_fits(inner) for inner in table.below())
 
 
@@ -292,7 +291,6 @@ def _is_cartesian(table: GainTable) -> bool:
 
 
 def _admittance(table: GainTable) -> str | None:
-    """The key by which an admittance is known."""
     found = (key for key in _OF_ADMITTANCE if not _inner(table, key).keys().isdisjoint(_MOTIONS))
     return next(found, "admittance" if _inner(table, "admittance") else None)
 

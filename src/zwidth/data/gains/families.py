@@ -30,7 +30,6 @@ _LEROBOT_NOTES = (
 
 
 def fits_lerobot(table: GainTable) -> bool:
-    """True where the lists stand somewhere."""
     return next(_places(table), None) is not None
 
 
@@ -150,12 +149,10 @@ _PIPER_NOTES = (
 
 
 def fits_piper(table: GainTable) -> bool:
-    """True for a file with such a table."""
     return "piper" in table
 
 
 def read_piper(tables: Sequence[GainTable], both: bool) -> ArmGains:
-    """The numbers of one file."""
     if len(tables) > 1:
         raise InputError("one file gives the numbers of a Piper; with --both they are taken for both arms")
     table = tables[0].table("piper")
@@ -191,7 +188,6 @@ _I2RT_NOTES = (
 
 
 def fits_i2rt(table: GainTable) -> bool:
-    """True for an arm or a gripper of i2rt."""
     return ("kp" in table and "kd" in table and "motor_list" in table) or "motor_kp" in table
 
 
@@ -300,7 +296,6 @@ _OPENARM_NOTES = (
 
 
 def fits_openarm(table: GainTable) -> bool:
-    """True where one of its keys is there."""
     return any(key in table for key in (*_SIDES.values(), "Bilateral"))
 
 

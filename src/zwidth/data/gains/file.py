@@ -22,7 +22,6 @@ LARGEST_FILE = 1 << 20
 """Bytes; a gain file is a page of text."""
 
 MOST_JOINTS = 64
-"""In one file."""
 
 
 DEEPEST = 4
@@ -65,7 +64,6 @@ class GainTable:
             waiting += [(table.table(key), depth + 1) for key in inner if depth < DEEPEST]
 
     def number(self, key: str, unit: str) -> Fraction:
-        """One number."""
         return parse_number(self.values[key], unit, self.where(key)).fraction
 
     def numbers(self, key: str, unit: str, joints: int | None = None) -> list[Fraction]:

@@ -14,7 +14,6 @@ from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 
 NONE = FrictionCompensation()
-"""No compensation of friction."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,6 @@ class CoupledJoint:
         return replace(self, devices=(first, second))
 
     def pair(self) -> Pair:
-        """The pair to decide."""
         (leader, its_damping), (follower, damping) = map(self._side, self.devices, self.gains)
         mine, other = self.gains
         laws: dict[str, Any] = {}
@@ -161,7 +159,6 @@ class CoupledJoint:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """The gains of both sides, units in the keys."""
         return {
             side: {
                 "stiffness_N_m_per_rad": float(own.stiffness),

@@ -205,7 +205,6 @@ class Servo:
 
 
 def family(name: str) -> Family:
-    """What is published about a family."""
     table = _data()[name]
     values = {
         key: Value(Exact(row["value"]), row["source"])
@@ -218,7 +217,6 @@ def family(name: str) -> Family:
 
 
 def plants() -> Mapping[str, PublishedPlant]:
-    """All published plants by name."""
     return {name: _plant(name, table) for name, table in _data()["plants"].items()}
 
 

@@ -60,7 +60,6 @@ class _Column(NamedTuple):
 
 
 def bag_table(path: Path) -> Table:
-    """The numbers in a bag."""
     columns: dict[str, _Column] = {}
     units: dict[str, str | None] = {TIME: "ns"}
     bag = _opened(path)
@@ -201,7 +200,6 @@ def _is_number(value: Any) -> bool:
 
 
 def _are_names(value: Any) -> bool:
-    """Whether it is a list of texts that tell its places apart."""
     texts = isinstance(value, list) and bool(value) and all(isinstance(v, str) and v for v in value)
     return texts and len(set(value)) == len(value)
 

@@ -30,11 +30,9 @@ class Meaning:
     """What the columns of a table are."""
 
     columns: Mapping[str, str]
-    """The column of each quantity that there is."""
     factors: Mapping[str, float]
     """SI per number in the column, of each."""
     motion: Motion
-    """"linear" or "rotary"."""
     resolution: float | None
     """[m; rad] stated step of the encoder; None if nobody stated it."""
 
@@ -97,7 +95,6 @@ def is_unit(text: str) -> bool:
 
 
 def _resolution(table: Table) -> float | None:
-    """The resolution that a trace of ours says it has."""
     values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
     return next((float(v) for v in values if v is not None), None)
 

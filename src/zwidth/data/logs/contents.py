@@ -29,7 +29,6 @@ OF_A_LOOP = ("sample", "time_s", "late_s", "status", "phase", "law")
 """Of the loop itself: which sample, when, how late; the answer; what the loop was doing, by which law."""
 
 _NUMBERS = ("origin_m", "origin_rad", "sense", "resolution_m", "resolution_rad")
-"""What is computed with, where a recording says it of itself."""
 
 _UNITS = {
     "_m_per_s": "m/s",
@@ -51,16 +50,13 @@ class Head:
     columns: tuple[str, ...]
     """Names, units in them."""
     motion: str
-    """"linear" or "rotary"."""
     period: float
     """T [s]."""
     title: str
-    """What was served, in words."""
     about: dict[str, Any]
     """Whatever else was told: device, environment, laws, safety, versions; as JSON has it."""
 
     def text(self, **more: Any) -> str:
-        """All of it as JSON, and what is said more."""
         return as_json({"format": FORMAT, **asdict(self), **more})
 
 

@@ -42,8 +42,6 @@ Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
 
 @dataclass(frozen=True, kw_only=True)
 class Layout:
-    """The layout of a text."""
-
     delimiter: str
     """One character; a space stands for any white space."""
     decimal: str
@@ -57,7 +55,6 @@ class Layout:
     header: str
     """The line with the names, as it stands, or ""."""
     sample: Sample
-    """The first rows, split."""
     comments: tuple[str, ...]
     """Lines before the numbers that are comments."""
 
@@ -70,7 +67,6 @@ class Layout:
         return [_kind(self.fields(name)) for name in self.names]
 
     def fields(self, column: str) -> list[str]:
-        """The first rows of a column."""
         return [row[self.names.index(column)] for row in self.sample]
 
 
@@ -137,7 +133,6 @@ def _most_columns(lines: list[str], rows: list[tuple[int, str]]) -> _Split:
 
 
 def split(line: str, delimiter: str) -> list[str]:
-    """The fields of a line, without their quotes."""
     if delimiter == " ":
         return line.split()
     if '"' in line:
@@ -276,7 +271,6 @@ def _commas(sample: Sample) -> bool:
 
 
 def _filled(sample: Sample, columns: int) -> list[bool]:
-    """Of each column whether anything stands in it."""
     return [any(row[k] for row in sample) for k in range(columns)]
 
 

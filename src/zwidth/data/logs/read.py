@@ -191,7 +191,6 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
 
 
 def _in_archive(path: Path, sheet: str | None) -> Table:
-    """The table of a zip archive, if it is a workbook."""
     from zwidth.data.logs.workbook import kind_of_archive
 
     kind = kind_of_archive(path)
@@ -222,7 +221,6 @@ def _old_office(path: Path) -> str:
 
 
 def _recorded(path: Path) -> Table | None:
-    """The table of a recording of a served loop; None if it is none."""
     from zwidth.data.logs.served import mcap_head, served_table
 
     head = mcap_head(path)

@@ -42,12 +42,10 @@ class Rows(NamedTuple):
     actuator_force: Array | None
 
     def part(self, which: slice | Array) -> Rows:
-        """Some of the rows."""
         return Rows(*(None if column is None else column[which] for column in self))  # type: ignore[arg-type]
 
 
 def joined(first: Rows, second: Rows) -> Rows:
-    """Two stretches one after the other."""
     return Rows(*(None if a is None else np.concatenate((a, b)) for a, b in zip(first, second, strict=True)))  # type: ignore[arg-type]
 
 

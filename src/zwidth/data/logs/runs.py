@@ -47,7 +47,6 @@ class Cutter:
         self._length = self._scraps = 0
 
     def segments(self, rows: Iterable[Rows]) -> Iterator[Segment]:
-        """The rows in order, cut."""
         waiting: Rows | None = None
         for new in rows:
             piece = new if waiting is None else joined(waiting, new)
@@ -163,8 +162,6 @@ GAP, REPEATED, BACK = 1, 2, 3
 
 @dataclass(frozen=True, kw_only=True)
 class Clock:
-    """What the first stamps say."""
-
     period: float
     """[s] roughly T."""
     group: int

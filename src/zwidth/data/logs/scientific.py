@@ -88,7 +88,6 @@ def _columns(name: str, data: h5py.Dataset) -> dict[str, _Column]:
 
 
 def _part(data: Any, column: _Column, start: int, end: int) -> Values:
-    """Rows of a column from its dataset."""
     if column.where is None:
         return np.asarray(data[start:end])
     if isinstance(column.where, str):
@@ -187,7 +186,6 @@ def _first_line(warning: warnings.WarningMessage) -> str:
 
 
 def _held(path: Path, columns: Mapping[str, _Vector]) -> Table:
-    """The table of vectors that are in memory."""
     return Table(
         source=str(path),
         units={name: unit for name, (_, unit) in columns.items()},

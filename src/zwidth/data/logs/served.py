@@ -44,7 +44,6 @@ CDR = b"\x00\x01\x00\x00"
 """Before each message: little-endian."""
 
 ROWS, EVENTS = "/zwidth/model/samples", "/zwidth/events"
-"""Topics."""
 
 HEAD, END = "zwidth recording", "zwidth end"
 """Names of the metadata at the beginning, and behind the last row."""
@@ -233,7 +232,6 @@ def _run_of_rows(data: bytes, place: int, width: int) -> tuple[Any, int]:
 
 
 def _event(message: bytes) -> dict[str, Any]:
-    """The JSON in a message of one string."""
     (size,) = unpack_from("<I", message, len(CDR))
     return from_json(message[8 : 8 + size - 1])
 
@@ -332,7 +330,6 @@ class Mcap:
         return None
 
     def deserialize(self, data: bytes, msgtype: Any) -> Any:
-        """The message in these bytes."""
         decoder = self._decoders[msgtype]
         assert decoder is not None
         return decoder(data)

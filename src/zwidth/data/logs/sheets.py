@@ -46,7 +46,6 @@ def table_of_sheets(book: Sheets, sheet: str | None) -> Table:
 
 
 def _named(book: Sheets, sheet: str) -> str:
-    """The sheet of a name, however its letters are written."""
     found = [name for name in book.shown if name == sheet] or [
         name for name in book.shown if name.strip().lower() == sheet.strip().lower()
     ]

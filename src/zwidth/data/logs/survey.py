@@ -30,7 +30,6 @@ class Intervals(NamedTuple):
     """Sums over the intervals between stamps."""
 
     number: int = 0
-    """How many."""
     elapsed: float = 0.0
     """[s] of all together."""
     squares: float = 0.0
@@ -79,7 +78,6 @@ class Survey:
         self._before = np.nan
 
     def look(self, segments: Iterable[Segment]) -> None:
-        """Look at every segment, in their order."""
         for segment in segments:
             self.samples += segment.rows.time.size
             self.runs += segment.begins
@@ -190,7 +188,6 @@ class Still(InputError):
 
 
 def refuse_survey(survey: Survey, tally: Counter[str], source: str) -> None:
-    """Refuse a log that says nothing."""
     if survey.samples < 2:
         raise InputError(
             f"{source} holds {survey.samples} samples; a log needs two at least, and many to say something"

@@ -42,7 +42,6 @@ class Samples(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many."""
         return int(self.counts.size)
 
     def time(self, about: About) -> Array:
@@ -190,8 +189,6 @@ _OF_A_BYTE = _table()
 
 
 class Found(NamedTuple):
-    """Packets in a stretch of bytes."""
-
     starts: Indices
     sizes: Indices
     """In bytes, all of a packet."""
@@ -281,10 +278,7 @@ _NUMBERS = ("period_s", "resolution", "force_per_unit", "force_most")
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """What telemetry says of its law."""
-
     motion: Literal["linear", "rotary"]
-    """"linear" or "rotary"."""
     period: float
     """T [s]."""
     resolution: float
@@ -298,7 +292,6 @@ class About:
 
 
 def about_in(content: bytes) -> About:
-    """What a packet of text says."""
     flags, text = content[0], content[1:].decode("ascii", "replace")
     first, *lines = text.splitlines() or [""]
     if first != FORMAT:
@@ -327,7 +320,6 @@ def about_in(content: bytes) -> About:
 
 
 PIECE = 2**17
-"""Bytes that are read at once."""
 
 
 def is_telemetry(start: bytes) -> bool:
@@ -383,7 +375,6 @@ def samples_of(path: Path, decoder: Decoder) -> Iterator[Samples]:
 
 
 def findings(decoder: Decoder) -> Iterator[Finding]:
-    """What was missing."""
     if decoder.lost:
         text = (
             f"{decoder.lost} packets are missing, and {decoder.damaged} stretches of the file are no packet"

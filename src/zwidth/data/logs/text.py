@@ -39,7 +39,6 @@ _MOST_BROKEN = 0.01
 
 
 def text_table(path: Path) -> Table:
-    """The table in a text file."""
     with opened_text(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)
@@ -155,7 +154,6 @@ class Parser:
         self.notes, self.first_note = 0, ""
 
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
-        """The columns of these lines."""
         if not lines:
             return
         cleaned = self._cleaned(lines)
@@ -193,7 +191,6 @@ class Parser:
         return [piece.columns]
 
     def report(self, notes: dict[str, Finding]) -> None:
-        """Write down what was left out."""
         if self.unfinished:
             text = "the last line has no end, it may be cut off; it is left out"
             notes["unfinished"] = Finding(kind="unfinished", text=text, samples=1)

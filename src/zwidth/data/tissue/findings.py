@@ -295,7 +295,6 @@ class Noise(NamedTuple):
 
     @property
     def order(self) -> int:
-        """p; 0 for white noise."""
         return self.coefficients.size - 1
 
 
@@ -397,7 +396,6 @@ def _stopped(position: Array, force: Array) -> NDArray[np.bool_]:
 
 
 def _units(position: Array, force: Array, stiffness: float) -> Iterator[Finding]:
-    """Said where the force goes about by far more or less than the start would make of the motion."""
     inside = position > 0
     moved = float(np.ptp(position[inside])) if inside.any() else 0.0
     if position.size >= FEWEST and not inside.any():

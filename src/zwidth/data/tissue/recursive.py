@@ -265,7 +265,6 @@ class Tracker:
 
 
 def positive(name: str, value: RealLike) -> Exact:
-    """A number > 0; `name` is said where it is not."""
     try:
         number = Exact(value)
     except InputError as error:

@@ -68,12 +68,10 @@ class Task(NamedTuple):
 
     @property
     def own(self) -> int:
-        """Parameters of the model."""
         return len(self.model.parameters)
 
     @property
     def size(self) -> float:
-        """Of the output."""
         return float(np.abs(self.record.output).max()) or 1.0
 
 

@@ -47,7 +47,6 @@ TERMS = (
     "friction compensation",
     "actuator limit",
 )
-"""The terms of the energy that goes in."""
 
 _MOST_ROWS = 20_000
 """Up to the end of the vibration, for the law."""
@@ -99,7 +98,6 @@ class PairEvidence:
     rubs: tuple[float, float] | None
     """[J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices."""
     rotary: bool
-    """Of joints."""
 
     @property
     def lost(self) -> float | None:
@@ -119,7 +117,6 @@ def vibrates(recording: PairRecording) -> tuple[Vibration, int] | None:
 def gather(
     recording: PairRecording, vibration: Vibration, leading: int, devices: tuple[Device, Device] | None
 ) -> PairEvidence:
-    """Measure everything."""
     known = [Known.of(device) for device in devices] if devices is not None else [Known(), Known()]
     rows, period = vibration.rows, recording.leader.period
     loop_period = max((k.period for k in known if k.period), default=period)

@@ -41,16 +41,13 @@ class PairRecording:
 
     leader: Recording
     follower: Recording
-    """Each as a recording of its own."""
 
     @property
     def source(self) -> str:
-        """Name of the file."""
         return self.leader.source
 
     @property
     def arms(self) -> tuple[Recording, Recording]:
-        """Leader and follower."""
         return self.leader, self.follower
 
 

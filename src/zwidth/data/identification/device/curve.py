@@ -64,7 +64,6 @@ class Side(NamedTuple):
 
 
 def sides(points: AnyTrace) -> tuple[Side, Side]:
-    """The pulses into the wall, and those out of it."""
     velocity = points["speed"].values
     order = np.argsort(np.abs(velocity), kind="stable")
     friction = (points["friction"].values * np.sign(velocity))[order]

@@ -78,7 +78,6 @@ class Estimate(NamedTuple):
 
 
 def unit_of(parameter: str, motion: str) -> str:
-    """The unit of a parameter."""
     return _UNITS[parameter][motion == "rotary"]
 
 
@@ -149,11 +148,9 @@ class Regression:
     """r², part of the force's variance that is explained."""
 
     def value(self, name: str) -> float:
-        """One parameter."""
         return float(self.values[self.names.index(name)])
 
     def error(self, name: str) -> float:
-        """Its standard error."""
         k = self.names.index(name)
         return float(np.sqrt(self.covariance[k, k]))
 

@@ -26,14 +26,10 @@ HINT = 0.8
 
 
 class Found(NamedTuple):
-    """The sums."""
-
     shape: Pulse
-    """The pulse."""
     late: float
     """By which the forces were recorded late [s]."""
     shares: tuple[float, float]
-    """See `Choice`."""
     moments: Moments
     longer: Moments
     """Of the pulses, and of those twice as long."""
@@ -42,7 +38,6 @@ class Found(NamedTuple):
     mass: float | None
     """Where it is given, and not fitted [kg; kg·m²]."""
     motion: str
-    """"linear" or "rotary"."""
 
     def regression(self, names: tuple[str, ...]) -> Regression | None:
         """The named parameters by the pulses."""

@@ -236,7 +236,6 @@ def plan_identification(
 
 
 def _middle(device: Device) -> Device:
-    """The device with the middle of each interval."""
     intervals = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
     return device.replace(**{k: float(v.low + v.high) / 2 for k, v in intervals.items()})
 

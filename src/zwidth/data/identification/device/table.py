@@ -113,7 +113,6 @@ def title(identified: IdentifiedNumbers) -> str:
 
 
 def source_name(identified: IdentifiedNumbers) -> str:
-    """The log's name without its folders, on one line."""
     return one_line(Path(identified.source).name or identified.source)
 
 
@@ -141,7 +140,6 @@ _QUANTITY = {"spring": "stiffness", "force_lag": "delay", "slow": "coulomb_frict
 
 
 def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
-    """See `Identified.to_dict`."""
 
     def key(name: str, quantity: str | None = None) -> str:
         unit = GLOSSARY[quantity or _QUANTITY.get(name, name)].unit_for(identified.motion)
@@ -196,7 +194,6 @@ DIGITS = 6
 
 
 def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | None) -> str:
-    """The text of the file, see `Identified.to_toml`."""
     lines = [f"# {line}" for line in _story(identified, confidence)]
     lines += ["", "[device]", f"name = {toml(device.name)}", f'motion = "{device.motion}"']
     for key, value in device.parameters().items():

@@ -58,7 +58,6 @@ class Lag(NamedTuple):
     seen: bool
     """True where τ = 0 is outside for the later moment, and for the earlier too where `sure`."""
     sure: bool
-    """See there."""
 
 
 def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
@@ -171,24 +170,18 @@ FEWEST = 10
 
 
 class Fit(NamedTuple):
-    """θ."""
-
     values: Array
     """Mass, damping, stiffness."""
     covariance: Array
-    """V."""
     pieces: int
     pulses: int
-    """How many they rest on."""
     explained: float
-    """r²."""
     further: float = 0.0
     further_error: float = 0.0
     """What was fitted besides, and its standard error; 0 where nothing was."""
 
     @property
     def errors(self) -> Array:
-        """Standard errors."""
         found: Array = np.sqrt(np.diag(self.covariance))
         return found
 

@@ -51,7 +51,6 @@ class Means(NamedTuple):
     expected: Array | None
     """The same as the perturbation alone would have it; None where it is not known."""
     hand: Array | None
-    """f_h."""
     actuator: Array | None
     actuator_slope: Array | None
     """f_a as it was held, and its rate."""
@@ -61,7 +60,6 @@ class Means(NamedTuple):
     """sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside
     strokes."""
     piece: NDArray[np.int64]
-    """Which piece it is of."""
 
 
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
@@ -219,7 +217,6 @@ class Weights(NamedTuple):
     motion: tuple[Array, Array, Array]
     """Weights that make ẍ T², ẋ T and x."""
     force: Array
-    """Of a force that was measured at the samples."""
     held: Array
     steps: Array
     """Of a held force, and of its rate times T, from −reach − lag on."""

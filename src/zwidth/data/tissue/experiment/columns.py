@@ -46,7 +46,6 @@ _WORDS: Mapping[str, tuple[str, ...]] = {
     ),
     "force": ("force load kraft standardkraft last effort fuerza forza fz fn f",),
 }
-"""Words of each quantity, the better ones first."""
 
 _OTHER_WORDS = """
 setpoint target commanded command desired rate speed velocity stress strain error std deviation temperature
@@ -192,7 +191,6 @@ def _candidates(table: Table, quantity: str, names: list[str]) -> list[str]:
 
 
 def _words(column: str) -> list[str]:
-    """The words of a name without its unit, in small letters: "Compressive load [N]", "indentationDepth"."""
     name = _split(column)[0]
     return [word.lower() for word in _WORD.findall(re.sub(r"([a-z])([A-Z])", r"\1 \2", name))]
 
@@ -232,7 +230,6 @@ def _kind(unit: str | None, quantity: str) -> str | None:
 
 
 def _refuse_without_unit(table: Table, found: Mapping[str, str], units: Mapping[str, str]) -> None:
-    """Ask for all units that nobody states at once."""
     lacking = [q for q, name in found.items() if q not in units and not spelled(_unit(table, name) or "")]
     if lacking:
         names = listed([found[q] for q in lacking])
@@ -245,7 +242,6 @@ _EXAMPLES = {"time": "s", "indentation": "mm", "force": "N"}
 
 
 def _factor(table: Table, quantity: str, column: str, given: str | None) -> float:
-    """SI per number in the column."""
     unit = given if given is not None else _unit(table, column)
     assert unit is not None
     kind = _kind(unit, quantity)

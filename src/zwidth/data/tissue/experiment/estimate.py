@@ -53,7 +53,6 @@ class Solved(NamedTuple):
 
     @property
     def whitened(self) -> tuple[Array, Array]:
-        """W r and W J."""
         return self.noise.whitened(self.left), self.noise.whitened(self.jacobian)
 
     @property

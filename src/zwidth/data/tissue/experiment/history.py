@@ -44,7 +44,6 @@ class History(NamedTuple):
     force: Array
     """Less its zero before the load, positive out of the tissue [N]."""
     kind: Kind
-    """Which test it is."""
     starts_loaded: bool
     """The step came before the first sample."""
     surface: float | None
@@ -149,7 +148,6 @@ def _of_holes(time: Array, holes: list[int], begins: tuple[int, ...]) -> list[Fi
 
 
 def _turned(trial: Trial, kind: Kind, loaded: bool) -> tuple[Array, Array, list[Finding]]:
-    """Depth and force, both positive where the probe pushes."""
     x, f = trial.indentation, trial.force
     push = float(np.median(f)) if loaded else _furthest(f)
     if push == 0.0:
@@ -242,7 +240,6 @@ def _noise_before(x: Array, f: Array) -> float:
 
 
 def about_surface(surface: float) -> Finding:
-    """That it is fitted."""
     text = f"the probe comes from outside and touches after {shown(surface, 'm', 3)}: that depth is fitted"
     return Finding(kind="surface", text=text)
 
@@ -275,7 +272,6 @@ NOISES = 6.0
 
 
 def kind_of(time: Array, indentation: Array, force: Array) -> Kind:
-    """The kind of a test."""
     probe, push = held_for(time, indentation), held_for(time, force)
     if max(probe, push) < MOST:
         return "loading"
