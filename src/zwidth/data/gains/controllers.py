@@ -83,37 +83,22 @@ class JointLaw:
 
 @dataclass(frozen=True)
 class CartesianGains:
-    """The diagonal of K and D of an impedance at the end: x, y, z, and about x, y, z.
-
-    Attributes
-    ----------
-    stiffness
-        [N/m], [N·m/rad].
-    damping
-        [N·s/m], [N·m·s/rad].
-    nullspace, nullspace_damping
-        Of the joints, projected into what does not move the end [N·m/rad], [N·m·s/rad]; 0: none.
-    rate
-        Of the controller [Hz]; None where the file does not say.
-    source
-        Where they stand.
-    factors
-        ζ of each.
-    keys
-        That lead to the table of the controller.
-    of_task
-        True of CRISP, which has a key for each axis.
-    """
+    """The diagonal of K and D of an impedance at the end: x, y, z, and about them; `keys` lead to its table."""
 
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
+    """[N/m], [N·m/rad]; [N·s/m], [N·m·s/rad]."""
     nullspace: float
     nullspace_damping: float
+    """Of the joints, projected into what does not move the end [N·m/rad], [N·m·s/rad]; 0: none."""
     rate: Fraction | None
+    """Of the controller [Hz]; None where the file does not say."""
     source: str
     factors: tuple[float, ...] = (1.0,) * 6
+    """ζ of each."""
     keys: tuple[str, ...] = ()
     of_task: bool = False
+    """Of CRISP, which has a key for each axis."""
 
     def wall(self, turns: int) -> MatrixWall:
         """As a wall for a hand at a point, 0 turns, or in pose, 3."""

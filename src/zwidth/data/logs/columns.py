@@ -41,11 +41,11 @@ def meaning_of(
     table: Table,
     columns: Mapping[str, str],
     *,
-    units: Mapping[str, str] | None,
-    scale: Mapping[str, object] | None,
-    resolution: object,
-    counts_per_turn: object,
-    motion: str | None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    resolution: object = None,
+    counts_per_turn: object = None,
+    motion: str | None = None,
 ) -> Meaning:
     """Factors to SI of every column, and whether the device turns."""
     _check_keys("units", units, columns)
@@ -57,7 +57,8 @@ def meaning_of(
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
     if resolution is None and counts_per_turn is None:
-        resolution = _resolution(table)
+        values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
+        resolution = next((float(v) for v in values if v is not None), None)  # of a trace of ours
     if "time" in columns and stated["time"] is None and not isinstance(scale.get("time"), str):
         _ask_for_unit_of_time(table, columns["time"])
     turning = _turning(motion, stated, scale, resolution, counts_per_turn)
@@ -92,11 +93,6 @@ def is_unit(text: str) -> bool:
     except InputError:
         return _is_counts(unit)
     return True
-
-
-def _resolution(table: Table) -> float | None:
-    values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
-    return next((float(v) for v in values if v is not None), None)
 
 
 def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
@@ -393,7 +389,9 @@ def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
         if word.endswith("_" + suffix) and len(word) > len(suffix) + 1:
             return _word(word[: -len(suffix) - 1]), suffix
     plain = _word(word)
-    return plain, plain if plain in ("counts", "ticks", "seconds", "sec") else _counted(plain)
+    if plain in ("encoder_counts", "enc_counts"):
+        return plain, "counts"
+    return plain, plain if plain in ("counts", "ticks", "seconds", "sec") else None
 
 
 def role_of_force(column: str) -> str | None:
@@ -427,10 +425,6 @@ def is_target(column: str) -> bool:
     alone = bool(words) and words <= {"target", "goal", "setpoint", "reference"}
     aimed, place = set(_AIMED.split()), set(_OF_A_PLACE.split())
     return alone or (words <= aimed | place and bool(words & aimed) and bool(words & place))
-
-
-def _counted(word: str) -> str | None:
-    return "counts" if word in ("encoder_counts", "enc_counts") else None
 
 
 def _word(text: str) -> str:

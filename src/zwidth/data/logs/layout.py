@@ -248,15 +248,17 @@ def laid_out(
     above = [line for line in lines[:first] if line.strip()]
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]
-    header, names, units_line = _header(plain, comments, delimiter, _filled(sample, columns))
+    filled = [any(row[k] for row in sample) for k in range(columns)]
+    header, names, units_line = _header(plain, comments, delimiter, filled)
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
     units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
+    fields = [field for row in sample for field in row]
+    commas = delimiter != "," and any("," in field for field in fields)
     return Layout(
         delimiter=delimiter,
-        decimal=decimal_of(field for row in sample for field in row)
-        or ("," if delimiter != "," and _commas(sample) else "."),
+        decimal=decimal_of(fields) or ("," if commas else "."),
         names=tuple(names),
         units=units,
         skipped=lines.index(header) + 1 if header.startswith(LABVIEW) else first,  # rows with comments count
@@ -264,14 +266,6 @@ def laid_out(
         sample=sample,
         comments=comments,
     )
-
-
-def _commas(sample: Sample) -> bool:
-    return any("," in field for fields in sample for field in fields)
-
-
-def _filled(sample: Sample, columns: int) -> list[bool]:
-    return [any(row[k] for row in sample) for k in range(columns)]
 
 
 def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:

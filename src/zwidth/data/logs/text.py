@@ -45,12 +45,11 @@ def text_table(path: Path) -> Table:
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
     _refuse_long_table(layout, path)
-    attributes = _attributes(layout)
     table = Table(
         source=str(path),
         units={name: unit_in(layout, name) for name in layout.names},
         read=lambda names: _read(path, layout, names, table.notes),
-        attributes=attributes,
+        attributes=_attributes(layout),
     )
     return table
 
@@ -107,7 +106,7 @@ def _read(
         rest, above = b"", layout.skipped
         while piece := file.read(_PIECE):
             if above:
-                piece, above = _without_lines(piece, above), 0
+                piece, above = piece.split(b"\n", above)[-1], 0
             end = piece.rfind(b"\n") + 1
             if end == 0 and len(rest) + len(piece) > 2 * _PIECE:
                 if not piece.strip(b"\0"):
@@ -126,13 +125,6 @@ def _read(
     if b"\0" in rest or (not rest.strip(b"\0") and rest):
         notes["zeros"] = Finding(kind="zeros", text="the file ends in zero bytes: its end was never written")
     parser.report(notes)
-
-
-def _without_lines(piece: bytes, count: int) -> bytes:
-    start = 0
-    for _ in range(count):
-        start = piece.index(b"\n", start) + 1
-    return piece[start:]
 
 
 class Parser:
