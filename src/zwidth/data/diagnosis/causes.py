@@ -28,7 +28,6 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
 
-
 SURE = 0.6
 """A cause that is less likely than this is not named."""
 

@@ -90,7 +90,6 @@ class Evidence:
     """Everything that was measured in a recording of a vibration."""
 
     vibration: Vibration
-    """Where, how fast, how far."""
     loop_period: float
     """[s] T of the loop."""
     resolution: float
@@ -206,6 +205,7 @@ def gather(
     motion = _Motion(xs, vibration.angular, file.loop_period, vibration.frequency, period)
     held, needed = motion.phasors(force), motion.needed(known)
     F = held * (1 if applied is not None else motion.late(delay))
+    aims = (file.x - file.error)[file.steady]
     lost = None
     if known.damping is not None:
         viscous = np.pi * motion.omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
@@ -236,13 +236,10 @@ def gather(
         by_inside=fitted.by_inside,
         ramps=None if applied is None else drive.ramps(applied),
         stated=fitted.stated,
-        aimed=None if recording.target is None else _aimed(file, vibration, X),
+        aimed=None
+        if recording.target is None
+        else float(abs(phasors(aims, vibration.frequency, period)[0]) / abs(X)),
     )
-
-
-def _aimed(file: _Aligned, vibration: Vibration, X: complex) -> float:
-    target = (file.x - file.error)[file.steady]
-    return float(abs(phasors(target, vibration.frequency, file.period)[0]) / abs(X))
 
 
 def _aligned(recording: Recording, vibration: Vibration, known: Known) -> _Aligned:

@@ -57,7 +57,6 @@ class Law:
     compensation_speed: float
     """F [N; N·m] along the motion, 0 for none; v_s [m/s; rad/s]."""
     lag: float
-    """[s] s, from the position in a row to the force in it."""
     unexplained: float
     """Share of the force's variance that the law leaves over."""
     limited: float

@@ -122,10 +122,9 @@ def _read(names: list[str], source: str, log: Callable[..., Log], told: Told) ->
     roles = _roles(names, source, told.columns)
     if not roles:
         raise _Forceless(
-            f"{source}: no column is known to be the actuator's force, and without it nobody can "
-            "say where the energy of a vibration comes from; say which with "
-            f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
-            'columns={"actuator_force": …} for what the motor gives; there are '
+            f"{source}: no column is known to be the actuator's force, and without it nobody can say where "
+            f'the energy of a vibration comes from; say which with columns={{"{COMMANDED}": …}} for what the '
+            'law asks for, or columns={"actuator_force": …} for what the motor gives; there are '
             f"{', '.join(names)}{without_effort(names)}"
         )
     logs = {role: log(**_arguments(role, column, told)) for role, column in roles.items()}

@@ -43,7 +43,6 @@ SHORTEST_CYCLES = 4
 STEADY = 0.95
 """Share of the variance in the frequency and its harmonics from which a stretch is looked at as it is."""
 
-
 _BLOCK = 0.2
 """[s] pieces in which the size of the motion is looked at."""
 
@@ -79,11 +78,8 @@ class Vibration:
 
 
 def find(position: Array, period: float) -> Vibration | None:
-    """The stretch that vibrates; None where nothing goes to and fro often enough.
-
-    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and must
-    itself be so.
-    """
+    """The stretch that vibrates; None where nothing goes to and fro often enough. A slow one, a wheel that
+    wobbles, is looked for where no faster one is found that is regular, and must itself be so."""
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
         slow = _above(SLOWEST, position, period)

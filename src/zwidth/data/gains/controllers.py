@@ -66,11 +66,9 @@ class _OtherLaw(InputError):
 
 @dataclass(frozen=True)
 class JointLaw:
-    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand.
-
-    `keys` leads to the table of its controller, and `form` is how it has them: "gains" or "joints" below the
-    joint's name, "k_gains" in a list for all joints, "pid" of its one joint.
-    """
+    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand. `keys` leads to the
+    table of its controller, and `form` is how it has them: "gains" or "joints" below the joint's name,
+    "k_gains" in a list for all joints, "pid" of its one joint."""
 
     name: str
     stiffness: Fraction
@@ -83,7 +81,7 @@ class JointLaw:
 
 @dataclass(frozen=True)
 class CartesianGains:
-    """The diagonal of K and D of an impedance at the end: x, y, z, and about them; `keys` lead to its table."""
+    """The diagonal of K and D of an impedance at the end: x, y, z, and about them."""
 
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
@@ -293,9 +291,7 @@ def _joints(table: GainTable) -> Iterator[JointLaw]:
             "runs it"
         )
     if "k_gains" in table:
-        stiffness = table.numbers("k_gains", "N*m/rad")
-        damping = table.numbers("d_gains", "N*m*s/rad", len(stiffness))
-        for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
+        for n, (k, d) in enumerate(zip(*table.springs("k_gains", "d_gains"), strict=True)):
             where = table.where(f"k_gains[{n}]")
             yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, where, table.keys, "k_gains")
     if _inner(table, "pid"):

@@ -20,7 +20,6 @@ from zwidth.quantity.exact import Exact
 # v_des is 0: kd is of the follower's own speed.  The leader is limp: there is no law of both arms.  Source:
 # huggingface/lerobot, robots/openarm_follower.
 
-
 LEROBOT = "lerobot-damiao"
 
 _LEROBOT_NOTES = (
@@ -42,8 +41,7 @@ def read_lerobot(tables: Sequence[GainTable], both: bool) -> ArmGains:
             "of its own"
         )
     (place,) = places
-    stiffness = place.numbers("position_kp", "N*m/rad")
-    damping = place.numbers("position_kd", "N*m*s/rad", len(stiffness))
+    stiffness, damping = place.springs("position_kp", "position_kd")
     motors = family(LEROBOT).motors
     joints = []
     for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
@@ -65,7 +63,6 @@ def _places(table: GainTable) -> Iterator[GainTable]:
 # P counts, U the supply voltage, k_t and R the motor's constants at the output, e the efficiency.  Source:
 # Rhoban/bam, bam/feetech/actuator.py and its fitted parameters; 0.166 was measured there.  LeRobot drives the
 # follower alone: the leader is limp.
-
 
 FEETECH = "lerobot-feetech"
 
@@ -133,7 +130,6 @@ def _servos(table: GainTable) -> Iterator[GainTable]:
 # row is made for either end.  Source: agilexrobotics/piper_sdk, asserts/Q&A.MD; agilexrobotics/pyAgxArm#52,
 # #59.
 
-
 PIPER = "piper"
 
 _UNSURE = 3
@@ -156,10 +152,8 @@ def read_piper(tables: Sequence[GainTable], both: bool) -> ArmGains:
     if len(tables) > 1:
         raise InputError("one file gives the numbers of a Piper; with --both they are taken for both arms")
     table = tables[0].table("piper")
-    stiffness = table.numbers("kp", "N*m/rad")
-    damping = table.numbers("kd", "N*m*s/rad", len(stiffness))
     joints = []
-    for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
+    for n, (k, d) in enumerate(zip(*table.springs("kp", "kd"), strict=True)):
         for factor in (Fraction(1), _HIDDEN) if n < _UNSURE else (Fraction(1),):
             gains = Gains(k * factor, local_damping=d * factor, source=table.where(f"kp[{n}]"))
             name = f"J{n + 1}" + (f" ×{factor}" if n < _UNSURE else "")
@@ -175,7 +169,6 @@ def read_piper(tables: Sequence[GainTable], both: bool) -> ArmGains:
 # with β the bilateral_kp that a person gives when the arms are started, 0.2 by default here.  v_des is 0: kd
 # is of the follower's own speed, and the leader has no damping of its own.  Source: i2rt-robotics/i2rt,
 # examples/minimum_gello and robots/motor_chain_robot.py.
-
 
 I2RT = "i2rt"
 
@@ -202,8 +195,7 @@ def read_i2rt(tables: Sequence[GainTable], bilateral_kp: Fraction) -> ArmGains:
     if len(arms) > 2:
         raise InputError(f"a pair has two arms, got files of {len(arms)}")
     leader, follower = arms[0], arms[-1]
-    stiffness, damping = _lists(follower)
-    pulled = _lists(leader)[0]
+    (stiffness, damping), (pulled, _) = (arm.springs("kp", "kd") for arm in (follower, leader))
     if len(pulled) != len(stiffness):
         raise InputError(
             f"{leader.label} has {len(pulled)} joints and {follower.label} {len(stiffness)}; each joint is "
@@ -238,11 +230,6 @@ def read_i2rt(tables: Sequence[GainTable], bilateral_kp: Fraction) -> ArmGains:
     return ArmGains(I2RT, joints, tuple(notes), drives=True)
 
 
-def _lists(table: GainTable) -> tuple[list[Fraction], list[Fraction]]:
-    stiffness = table.numbers("kp", "N*m/rad")
-    return stiffness, table.numbers("kd", "N*m*s/rad", len(stiffness))
-
-
 def _compensation_of_i2rt(table: GainTable, count: int) -> list[FrictionCompensation]:
     """breakaway tanh(v/eps), of the versions that had it."""
     if "friction_comp" not in table:
@@ -270,7 +257,6 @@ def _motor(table: GainTable, joint: int) -> str:
 # on both sides, q' the other arm's position: Kd is of the speed of one arm against the other.  The factor 0.1
 # is in the code (ComputeFriction), although the comment beside the numbers says tanh(k q̇).  Source: the file
 # src/controller/control.cpp of that repository, function bilateral_step.
-
 
 OPENARM = "openarm"
 
@@ -347,9 +333,8 @@ def _gains(table: GainTable) -> list[Gains]:
                 "openarm_bilateral): its Kp and Kd are per unit of inertia, and no spring and damper joins "
                 "the arms; not decided here"
             )
-    stiffness = table.numbers("Kp", "N*m/rad")
+    stiffness, damping = table.springs("Kp", "Kd")
     count = len(stiffness)
-    damping = table.numbers("Kd", "N*m*s/rad", count)
     offset = table.numbers("Fo", "N*m", count) if "Fo" in table else [Fraction(0)] * count
     rows = zip(stiffness, damping, _compensation_of_openarm(table, count), offset, strict=True)
     return [
@@ -381,8 +366,7 @@ def _compensation_of_openarm(table: GainTable, count: int) -> list[FrictionCompe
 
 def _on_the_host(table: GainTable, stock: list[Gains] | None) -> list[Gains]:
     """The leader of a fork over two computers (IS0moto/openarm_teleop)."""
-    stiffness = table.numbers("Kp", "N*m/rad")
-    local = table.numbers("Kd", "N*m*s/rad", len(stiffness))
+    stiffness, local = table.springs("Kp", "Kd")
     if "Kf" in table and any(table.numbers("Kf", "1", len(stiffness))):
         raise InputError(
             f"{table.where('Kf')}: the leader is also given the follower's measured torque; that is no "

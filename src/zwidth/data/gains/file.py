@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,6 @@ LARGEST_FILE = 1 << 20
 """Bytes; a gain file is a page of text."""
 
 MOST_JOINTS = 64
-
 
 DEEPEST = 4
 """Tables inside tables in which gains are looked for."""
@@ -86,6 +86,11 @@ class GainTable:
             parse_number(value, unit, f"{self.where(key)}[{n}]").fraction for n, value in enumerate(given)
         ]
 
+    def springs(self, stiffness: str, damping: str) -> tuple[list[Fraction], list[Fraction]]:
+        """The lists of the springs and of the dampers of the joints."""
+        found = self.numbers(stiffness, "N*m/rad")
+        return found, self.numbers(damping, "N*m*s/rad", len(found))
+
 
 def read_table(path: str | Path) -> GainTable:
     """The keys of a YAML, JSON or TOML file."""
@@ -93,7 +98,7 @@ def read_table(path: str | Path) -> GainTable:
     path = Path(path)
     text = _text(path, name)
     suffix = path.suffix.lower()
-    read = {".json": _json, ".toml": _toml}.get(suffix, _yaml)
+    read = {".json": partial(json.loads, parse_float=Decimal), ".toml": _toml}.get(suffix, _yaml)
     try:
         content = read(text)
     except RecursionError:
@@ -140,10 +145,6 @@ def _both(first: Any, second: Any, key: str, line: int) -> Any:
     for name, value in second.items():
         found[name] = _both(found[name], value, name, line) if name in found else value
     return found
-
-
-def _json(text: str) -> Any:
-    return json.loads(text, parse_float=Decimal)
 
 
 def _toml(text: str) -> Any:

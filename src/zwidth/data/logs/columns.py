@@ -69,8 +69,7 @@ def meaning_of(
         if quantity == "position" and _is_counts(stated[quantity]) and not isinstance(times, str):
             if step is None:
                 raise InputError(
-                    f'{table.source}: "{column}" is in counts; say what a count is with '
-                    'resolution="22.4 um" '
+                    f'{table.source}: "{column}" is in counts; say what a count is with resolution="22.4 um" '
                     "or counts_per_turn=4096"
                 )
             factors[quantity] = step if times is None else step * float(parse_number(times, "1", "scale"))
@@ -297,7 +296,6 @@ def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:
 # "position_mm", "enc (counts)" and "force [N]" are recognised: a unit stands at the end of a name, in
 # brackets, after a slash or an underscore.  What is left is compared with the words below, the last part of a
 # path alone ("log/left/position" is "position").  Two candidates are never chosen between.
-
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 

@@ -48,7 +48,6 @@ class Head:
     """What is known before the first row."""
 
     columns: tuple[str, ...]
-    """Names, units in them."""
     motion: str
     period: float
     """T [s]."""
@@ -85,7 +84,6 @@ class Part(NamedTuple):
 
 
 def head_in(text: str | bytes, source: object) -> tuple[Head, dict[str, Any]]:
-    """The head in a text of JSON, and what is said more."""
     try:
         said = from_json(text)
         form = said.pop("format")
@@ -116,7 +114,6 @@ def _check(head: Head, source: object) -> None:
 
 
 def rows_lost(events: list[dict[str, Any]]) -> int:
-    """How many rows these events say were lost."""
     counts = (event.get("rows") for event in events if event.get("event") == ROWS_LOST)
     return sum(count for count in counts if isinstance(count, int))
 

@@ -33,7 +33,6 @@ MOST_SAMPLED = 2000
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _NUMBER_AND_UNIT = re.compile(r"[+-]?\d[\d.,]*\s*[^\W\d_]+\Z")
 
-
 Sample = tuple[tuple[str, ...], ...]
 """The first rows of numbers, split."""
 
@@ -99,10 +98,8 @@ _OF_A_BUS = re.compile(
 
 @lru_cache(maxsize=2)
 def layout_of(text: str, source: str, whole: bool) -> Layout:
-    """The layout of a text that starts so; `whole` says that this is all of it.
-
-    A file that is opened again, as to see first whether it holds two arms, is not looked at again.
-    """
+    """The layout of a text that starts so; `whole` says that this is all of it. A file that is opened again,
+    as to see first whether it holds two arms, is not looked at again."""
     lines = text.splitlines()
     if not whole and len(lines) > 1:
         lines = lines[:-1]  # the last is cut in the middle
@@ -145,7 +142,6 @@ def split(line: str, delimiter: str) -> list[str]:
 
 
 def is_comment(line: str) -> bool:
-    """True where a line is no row."""
     return line.lstrip().startswith(_COMMENTS)
 
 
@@ -280,10 +276,8 @@ def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
 def _header(
     plain: list[str], comments: tuple[str, ...], delimiter: str, filled: list[bool]
 ) -> tuple[str, list[str], list[str]]:
-    """The line with the names, its fields, and the fields of the line of units below it.
-
-    A number above a column in which nothing stands is a note.  Delimiters that end each row may be missing.
-    """
+    """The line with the names, its fields, and the fields of the line of units below it. A number above a
+    column in which nothing stands is a note. Delimiters that end each row may be missing."""
     if head := next((line for line in reversed(plain) if line.startswith(LABVIEW + delimiter)), ""):
         return _of_labview(head, plain, delimiter, filled)
     columns = len(filled)

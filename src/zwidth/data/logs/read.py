@@ -73,10 +73,8 @@ _LOOKED_AT = 2**24
 def opened(
     path: str | PathLike[str], sheet: str | None = None, columns: Mapping[str, str | None] | None = None
 ) -> Iterator[Table]:
-    """The table of a file, from which several logs may be made; what cannot be read inside is refused.
-
-    Of a workbook it is that of the sheet, or of the one sheet that has these columns and a position.
-    """
+    """The table of a file, from which several logs may be made; what cannot be read inside is refused. Of a
+    workbook it is that of the sheet, or of the one sheet that has these columns and a position."""
     with readable(str(path)):
         table = _one_sheet(table_of_file(Path(path), sheet), columns or {})
         yield with_whole_stamps(table, (columns or {}).values())

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from zwidth.native.compiled import Array
 
-
 DATE = 1e8
 """[s] Stamps beyond it, three years, are dates."""
 
@@ -181,7 +180,6 @@ def _seconds(time: NDArray[Any], origin: Any, factor: float) -> Array:
 # comes just after.  Whoever sums such samples for the impulse of the force counts the change half a sample
 # early, which looks like a mass of c T/2 more: 1.5 g for 3 N·s/m at 1 kHz.  The mean of both sides has no
 # such mass, and is what a load cell gives, which does not follow a jump.
-
 
 ROUNDING = 1e-9
 """Of the largest force, below which a jump is none."""

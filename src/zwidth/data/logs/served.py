@@ -178,11 +178,9 @@ def _expanded(stored: bytes, codec: str, size: int) -> bytes | None:
 def _messages(
     data: bytes, topics: dict[int, str], width: int, following: int | None
 ) -> tuple[Part, int | None] | None:
-    """The rows and events in a chunk, and the number of the row that follows.
-
-    None if it holds what no recorder writes, or does not begin with the row that is to follow: then a chunk
-    before it was passed over, since it is no more known as one.
-    """
+    """The rows and events in a chunk, and the number of the row that follows. None if it holds what no
+    recorder writes, or does not begin with the row that is to follow: then a chunk before it was passed over,
+    since it is no more known as one."""
     rows: list[Any] = []
     events: list[dict[str, Any]] = []
     place = 0
@@ -239,7 +237,6 @@ def _event(message: bytes) -> dict[str, Any]:
 # A recording as the table of a log: when a sample was taken, the position as read, the force given.
 #
 # A row whose sample had no good answer has no position: nothing was read.
-
 
 GOOD = 0.0
 """The status of a sample that was read."""

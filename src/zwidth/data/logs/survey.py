@@ -18,7 +18,6 @@ from zwidth.quantity.text import told
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
 
-
 _LEVELS = 64
 """Different positions after which the step is looked for."""
 
@@ -247,7 +246,6 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
 
 
 def clock_findings(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Finding]:
-    """Gaps, restarts, repetitions, jitter."""
     numbers = {**tally, "longest": cutter.longest_gap}
     for what, (kind, text, samples) in _COUNTED.items():
         if tally[what]:

@@ -18,7 +18,6 @@ from zwidth.quantity.answered import answered
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
 
-
 PIECE = 2**18
 """Rows that are read at once, where the format lets us choose."""
 

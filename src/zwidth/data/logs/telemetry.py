@@ -112,7 +112,6 @@ class Decoder:
         self.about = about
 
     def _samples(self, data: Bytes, at: Indices) -> Samples:
-        """Of the packets of samples that begin at these places."""
         body = at + HEAD
         status = number(data, body + 8, 1)
         starts, stamps = self._follow(
@@ -159,7 +158,6 @@ class Decoder:
 #
 # The checksum is the CRC-16 of ITU-T V.41, polynomial 0x1021, begun with ones, of all bytes before it.
 # Within a packet nothing is looked for.  Layout: firmware/mains/shared/telemetry.h.
-
 
 Bytes = NDArray[np.uint8]
 Indices = NDArray[np.int64]
@@ -268,7 +266,6 @@ def _apart(starts: Indices, sizes: Indices) -> tuple[Indices, Indices]:
 #
 # One byte of flags stands before it: 1, positions are in rad; 2, forces are sent as whole units of the law.
 # Otherwise one unit of a force that is sent is ``force_most / 32767``.
-
 
 FORMAT = "zwidth telemetry 1"
 

@@ -260,7 +260,6 @@ def _numbers(column: pa.Array) -> Values:
 # for a missing number, lines of text below the table.  A line of text between numbers is refused: nobody
 # knows what it was.
 
-
 MOST_NOTES = 50
 """Lines of text below a table; more are no notes."""
 

@@ -154,7 +154,6 @@ def _clock(since: timedelta) -> str:
 # The library holds styles and texts in memory as objects, many times as large as they are in the file, and a
 # row at a time; so each of these is bounded by itself.
 
-
 SMALL = 2**20
 """[bytes] Most of what describes a workbook: styles, names, relations."""
 

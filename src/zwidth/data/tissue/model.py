@@ -169,7 +169,6 @@ def unit_of(parameter: str, motion: str, exponent: float = 1.0) -> str:
 # With the rates 1/τᵢ given, the force is linear in K, B and the μᵢ, all ≥ 0.  So a grid of rates is tried,
 # one branch after the other, each the one that leaves the least; that needs no guess from a person.
 
-
 RATES = 25
 """In the grid, from a third of one per record to the fastest that samples show."""
 

@@ -31,7 +31,6 @@ from zwidth.quantity.exact import Exact, RealLike
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-
 Method = Literal["least-squares", "instrumental", "output-error"]
 
 _SLOWEST = 1e5

@@ -52,7 +52,6 @@ NOWHERE = (-np.inf, np.inf)
 EXACT = 1e-7
 """Residuals below this part of the largest output are rounding."""
 
-
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 
 

@@ -70,8 +70,6 @@ _MOST_LAGS = 16
 
 @dataclass(frozen=True, kw_only=True)
 class PairEvidence:
-    """Everything that was measured in a vibration of two arms."""
-
     vibration: Vibration
     """Of the arm that swings further."""
     leading: int
@@ -256,7 +254,6 @@ def _work(force: Phasors, x: Phasors, orders: Array) -> float:
 #
 # x is the arm's own position, x' the other's, v the difference of the last two readings.  Every pair of lags
 # of a list is tried, the terms are fitted by least squares, and the law is the one of least BIC.
-
 
 _MOST_FITTED = 2000
 _FEWEST_ROWS = 30

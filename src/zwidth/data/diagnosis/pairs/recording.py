@@ -95,8 +95,7 @@ def _both(table: Table, told: Told) -> PairRecording:
             f"{table.source}: no column is known to be a force of either arm, and without it nobody can say "
             'where the energy of a vibration comes from; say which with columns={"leader_actuator_force": …} '
             'and columns={"follower_actuator_force": …}, or with commanded_force for what a law asks for; '
-            "there are "
-            f"{listed(table.units)}{without_effort(table.units)}"
+            f"there are {listed(table.units)}{without_effort(table.units)}"
         )
     original, chosen = sides[0]
     named = {**chosen, "hand_force": None, "actuator_force": None}

@@ -74,9 +74,7 @@ def sides(points: AnyTrace) -> tuple[Side, Side]:
 
 def fastest(points: AnyTrace) -> tuple[float, float]:
     """The speed that 32 strokes, or a quarter of them, went beyond, into the wall and out of it [m/s; rad/s].
-
-    0 where there are none.
-    """
+    0 where there are none."""
     into, out = (_fastest(side) for side in sides(points))
     return into, out
 
@@ -92,11 +90,9 @@ def _fastest(side: Side) -> float:
 
 
 def friction_bins(points: AnyTrace, bins: int) -> xr.Dataset:
-    """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction.
-
-    So many bins each way, fewer where one would have less than eight strokes; along `direction`, "inward" and
-    "outward", and `bin`: speed, friction, its standard error, and the strokes in it.
-    """
+    """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction. So
+    many bins each way, fewer where one would have less than eight strokes; along `direction`, "inward" and
+    "outward", and `bin`: speed, friction, its standard error, and the strokes in it."""
     import xarray as xr
 
     table = np.array([[mean[:4] for mean in way] for way in _binned(sides(points), bins)], dtype=np.float64)

@@ -20,7 +20,6 @@ from zwidth.quantity.glossary import GLOSSARY
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 HINT = 0.8
 """Confidence above which a bend that differs by direction is fitted, not only believed: it costs width."""
 
@@ -154,7 +153,6 @@ class Points:
         self._seen, self._stride = 0, 1
 
     def add(self, rows: Array, zero: str) -> None:
-        """Look at the pulses of the next piece."""
         if self._seen % self._stride == 0 and len(rows):
             self._kept.append((rows, line(rows, zero)))
             if sum(len(kept) for kept, _ in self._kept) > MOST:

@@ -176,10 +176,8 @@ def _piece(block: Block, resolution: float, count: float, stops: tuple[float, fl
 
 
 def _within_range(strokes: Strokes, block: Block, stops: tuple[float, float]) -> Strokes:
-    """The strokes in which the sensor of the hand's force is never at the end of its range.
-
-    A stroke goes as a whole: which of its pulses stay must not depend on the force that they show.
-    """
+    """The strokes in which the sensor of the hand's force is never at the end of its range. A stroke goes as
+    a whole: which of its pulses stay must not depend on the force that they show."""
     if block.hand_force is None or not np.isfinite(stops).any():
         return strokes
     so_far = np.cumsum(beyond(block.hand_force, stops))

@@ -268,7 +268,6 @@ def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
 # the wall (c-optimal; Elfving 1952).  One speed alone does: along a stroke it varies; a slow and a fast one
 # do better.
 
-
 PARAMETERS = ("mass", "damping", "coulomb_friction")
 
 INEFFICIENCY = 1.2
@@ -325,10 +324,8 @@ def covariance(
 
 
 def best_shares(strokes: tuple[Stroke, ...], parameter: str) -> tuple[float, ...]:
-    """Shares of the time that make a parameter's variance smallest.
-
-    By w_i ← w_i √(vᵀ M_i v / vᵀ M v), v = M⁻¹ c, which never makes it larger (Fellman 1974).
-    """
+    """Shares of the time that make a parameter's variance smallest. By w_i ← w_i √(vᵀ M_i v / vᵀ M v), v =
+    M⁻¹ c, which never makes it larger (Fellman 1974)."""
     informations = np.stack([s.information() for s in strokes])
     c = np.eye(len(PARAMETERS))[PARAMETERS.index(parameter)]
     shares = np.full(len(strokes), 1 / len(strokes))

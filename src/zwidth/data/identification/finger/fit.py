@@ -33,10 +33,8 @@ from zwidth.native.compiled import Array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 LATER = (0.0, 1e-3, 2e-3, 3e-3, 5e-3, 8e-3, 12e-3)
 """By which the force is read later, in search of a large τ [s]."""
-
 
 SHORTEST = 4
 """Samples of a quarter of a pulse: the shorter, the more is seen of the moment."""
@@ -61,10 +59,8 @@ class Lag(NamedTuple):
 
 
 def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
-    """How late the force of the hand is beside the actuator's; None where nothing tells.
-
-    `total` is the fit of device and finger to the actuator's force, whose delay is in samples.
-    """
+    """How late the force of the hand is beside the actuator's; None where nothing tells. `total` is the fit
+    of device and finger to the actuator's force, whose delay is in samples."""
     other = weights(LONGER * shape.piece, delay)
     rows, longer = (means(pieces, s, period) for s in (shape, other))
     if rows is None or longer is None:
@@ -141,11 +137,8 @@ def _worse(more: Array) -> float:
 
 
 def _moments(delay: float) -> tuple[float, float]:
-    """By how much the actuator's steps look late where the force is in time: least and most [samples].
-
-    Read first at the sample after it, and straight between samples, a step is half a sample before that
-    sample.
-    """
+    """By how much the actuator's steps look late where the force is in time: least and most [samples]. Read
+    first at the sample after it, and straight between samples, a step is half a sample before that sample."""
     if delay == int(delay):
         return -0.5, 0.5
     known = ceil(delay) - 0.5 - delay
@@ -155,7 +148,6 @@ def _moments(delay: float) -> tuple[float, float]:
 # Least squares with instruments over short pieces, what is slow taken out, the pieces as measure of scatter.
 #
 # θ = (Σ Zᵀ A)⁻¹ Σ Zᵀ y        V = (ZᵀA)⁻¹ (Σ_p g_p g_pᵀ) (ZᵀA)⁻ᵀ n/(n − 3),   g_p = Σ_{p} z (y − aᵀ θ)
-
 
 TERMS = ("mass", "damping", "stiffness")
 

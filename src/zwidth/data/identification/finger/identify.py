@@ -356,10 +356,8 @@ def _doubt(ways: Ways, rows: Means | None, friction: float, most: float) -> Arra
 
 
 def _half_a_sample(values: Array, period: float) -> Array:
-    """What it matters when within a sample the force steps, which only the actuator's force tells.
-
-    c v + k x at t + τ are c (v + τ a) + k (x + τ v): τ early reads c τ more mass and k τ more damping.
-    """
+    """What it matters when within a sample the force steps, which only the actuator's force tells. c v + k x
+    at t + τ are c (v + τ a) + k (x + τ v): τ early reads c τ more mass and k τ more damping."""
     _, damping, stiffness = np.abs(values)
     return np.array([damping, stiffness, 0.0]) * period / 2
 

@@ -63,11 +63,9 @@ class Means(NamedTuple):
 
 
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
-    """The log cut into pieces of so many seconds, each within a run; what is left over is not used.
-
-    Where the hand's force answers, no means are taken of a piece in which its sensor is at an end of its
-    range: as a whole, since which of its pulses stay must not depend on the force that they show.
-    """
+    """The log cut into pieces of so many seconds, each within a run; what is left over is not used. Where the
+    hand's force answers, no means are taken of a piece in which its sensor is at an end of its range: as a
+    whole, since which of its pulses stay must not depend on the force that they show."""
     size = round(seconds / log.sample_period)
     runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]
     if not runs:
@@ -91,10 +89,8 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
 
 
 def response(log: Log, pieces: Pieces, total: Array, delay: float) -> Array:
-    """The position that the actuator's force alone would make of mass, damping and stiffness.
-
-    It only serves as instrument and need not be exact: the delay is taken in whole samples.
-    """
+    """The position that the actuator's force alone would make of mass, damping and stiffness. It only serves
+    as instrument and need not be exact: the delay is taken in whole samples."""
     mass, damping, stiffness = (max(float(v), 1e-9) for v in total)
     numerator, denominator, _ = cont2discrete(([-1.0], [mass, damping, stiffness]), log.sample_period, "zoh")
     late = round(delay / log.sample_period)
@@ -178,11 +174,8 @@ def _centres(size: int, shape: Weights) -> NDArray[np.int64]:
 
 
 def _turning(side: Array) -> Array:
-    """Each 0 replaced by the nearest sign in its row.
-
-    A count is left by the edge by which it was entered, and a device that only turns, under a force that
-    hardly changes, turns in the middle between the two.
-    """
+    """Each 0 replaced by the nearest sign in its row. A count is left by the edge by which it was entered,
+    and a device that only turns, under a force that hardly changes, turns in the middle between the two."""
     at = np.broadcast_to(np.arange(side.shape[1]), side.shape)
     before = np.maximum.accumulate(np.where(side != 0, at, 0), axis=1)
     after = np.minimum.accumulate(np.where(side != 0, at, side.shape[1] - 1)[:, ::-1], axis=1)[:, ::-1]
@@ -202,7 +195,6 @@ def _turning(side: Array) -> Array:
 #
 # A hand that moves a device in strokes of some hertz does not tell such sums from those of smooth pulses, as
 # `pulses` has them; a perturbation of 50 Hz at 1 kHz does, by (ωT)²/12, a per cent of the finger's mass.
-
 
 _SPLINE = BSpline.basis_element(np.arange(-2.0, 3.0), extrapolate=False)
 

@@ -29,7 +29,6 @@ HOLE = 4.0
 SMALL = 0.02
 """Of the largest force, below which nothing is touched; and of the way, below which none was gone."""
 
-
 PIECES = 40
 """Of a test, in each of which a mean speed and force are taken."""
 
@@ -190,11 +189,9 @@ def _end(x: Array, f: Array) -> int:
 
 
 def _refuse_torn(time: Array, x: Array, f: Array, source: str) -> None:
-    """Refuse a force that falls while the probe goes on, as where a needle breaks in or a specimen breaks.
-
-    f = ∫ G(t − s) v(s) ds with G ≥ 0, so that at speeds between v and V it never falls below v/V of what it
-    was; half of that here, for a probe that first gathers speed, and for speeds between the edges.
-    """
+    """Refuse a force that falls while the probe goes on, as where a needle breaks in or a specimen breaks. f
+    = ∫ G(t − s) v(s) ds with G ≥ 0, so that at speeds between v and V it never falls below v/V of what it
+    was; half of that here, for a probe that first gathers speed, and for speeds between the edges."""
     edges = np.linspace(0, time.size - 1, min(PIECES, time.size // 3) + 1).astype(int)
     speed = np.diff(x[edges]) / np.diff(time[edges])
     first = int(np.argmax(speed > 0.5 * speed.max()))
@@ -253,7 +250,6 @@ def about_surface(surface: float) -> Finding:
 # Held is what stays in a narrow band for most of the time.  Where both do, it is what stays there longer;
 # where they do for nearly as long, as a force that has faded quickly does, it is the quieter: what a machine
 # holds it holds by what it measures well.
-
 
 Kind = Literal["relaxation", "creep", "loading"]
 KINDS: tuple[Kind, ...] = ("relaxation", "creep", "loading")
