@@ -269,8 +269,7 @@ def _at(times: Array, target: Log | float) -> Array:
         return np.full_like(times, target)
     blocks = list(target.blocks())
     known = np.concatenate([block.time for block in blocks])
-    there: Array = np.interp(times, known, np.concatenate([block.position for block in blocks]))
-    return there
+    return np.asarray(np.interp(times, known, np.concatenate([block.position for block in blocks])))
 
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"

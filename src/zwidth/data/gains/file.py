@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -98,7 +97,7 @@ def read_table(path: str | Path) -> GainTable:
     path = Path(path)
     text = _text(path, name)
     suffix = path.suffix.lower()
-    read = {".json": partial(json.loads, parse_float=Decimal), ".toml": _toml}.get(suffix, _yaml)
+    read = {".json": lambda text: json.loads(text, parse_float=Decimal), ".toml": _toml}.get(suffix, _yaml)
     try:
         content = read(text)
     except RecursionError:

@@ -255,8 +255,7 @@ class Stops:
 
 def beyond(force: Array, stops: tuple[float, float]) -> NDArray[np.bool_]:
     """Where a force is at one of its stops, or further out."""
-    found: NDArray[np.bool_] = (force <= stops[0]) | (force >= stops[1])
-    return found
+    return np.asarray((force <= stops[0]) | (force >= stops[1]))
 
 
 def at_ends(stops: tuple[float, float], unit: str) -> str:

@@ -158,8 +158,7 @@ def _bend_up(means: list[_Mean]) -> Array:
     nearby = np.pad(half_bend, 1, mode="edge")
     wide = np.maximum(np.append(gap, 0.0), np.append(0.0, gap))
     variance = np.array([mean.variance for mean in means])
-    taken: Array = np.maximum(nearby, 0.0) * (variance + wide**2 / 4)
-    return taken
+    return np.asarray(np.maximum(nearby, 0.0) * (variance + wide**2 / 4))
 
 
 def curve_below(points: AnyTrace, confidence: float, bins: int, steepest: float) -> FrictionCurve:

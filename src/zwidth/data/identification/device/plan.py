@@ -310,8 +310,7 @@ class Stroke(NamedTuple):
         matrix = np.stack(columns, axis=1)
         lines = np.linalg.qr(np.stack([np.ones(SAMPLES), time], axis=1))[0]
         matrix -= lines @ (lines.T @ matrix)
-        mean: Array = matrix.T @ matrix / SAMPLES
-        return mean
+        return np.asarray(matrix.T @ matrix / SAMPLES)
 
 
 def covariance(

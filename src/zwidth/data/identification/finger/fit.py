@@ -174,8 +174,7 @@ class Fit(NamedTuple):
 
     @property
     def errors(self) -> Array:
-        found: Array = np.sqrt(np.diag(self.covariance))
-        return found
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
 
 
 def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = False) -> Fit | None:
@@ -230,8 +229,7 @@ def solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64])
 def _cubic(place: tuple[int, ...]) -> Array:
     """Cubics of time, orthonormal; most pieces have their pulses at the same places."""
     time = np.array(place) - np.mean(place)
-    found: Array = np.linalg.qr(np.vander(time / np.abs(time).max(), SLOW))[0]
-    return found
+    return np.asarray(np.linalg.qr(np.vander(time / np.abs(time).max(), SLOW))[0])
 
 
 def without_slow(

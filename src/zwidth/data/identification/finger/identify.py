@@ -244,8 +244,7 @@ def _shift(task: _Task, road: _Road) -> Array:
 
 def _apart(ways: Ways) -> Array:
     """What pulses twice as long change, and more, since they are not endless."""
-    found: Array = SAFETY * np.abs(ways.fit.values - ways.longer.values)
-    return found
+    return np.asarray(SAFETY * np.abs(ways.fit.values - ways.longer.values))
 
 
 def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Finding]]:

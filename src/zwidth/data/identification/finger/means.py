@@ -132,8 +132,7 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
 
     def mean(rows: Array, weights: Array, before: int = reach) -> Array:
         windows = sliding_window_view(rows[clear], weights.size, axis=1)[:, centres - before]
-        found: Array = (windows @ weights).ravel()
-        return found
+        return np.asarray((windows @ weights).ravel())
 
     def motion(rows: Array, some: Array | float) -> Array:
         near = rows - rows[:, :1]  # against rounding
@@ -237,5 +236,4 @@ def _integral(value: Array, at: NDArray[np.floating[Any]]) -> Array:
     inside = np.clip(at, 0.0, value.size - 1.0)
     k = np.minimum(inside.astype(np.int64), value.size - 2)
     u = inside - k
-    found: Array = whole[k] + value[k] * u + (value[k + 1] - value[k]) * u * u / 2
-    return found
+    return np.asarray(whole[k] + value[k] * u + (value[k + 1] - value[k]) * u * u / 2)
