@@ -97,7 +97,7 @@ def read_table(path: str | Path) -> GainTable:
     path = Path(path)
     text = _text(path, name)
     suffix = path.suffix.lower()
-    read = {".json": lambda text: json.loads(text, parse_float=Decimal), ".toml": _toml}.get(suffix, _yaml)
+    read = {".json": _json, ".toml": _toml}.get(suffix, _yaml)
     try:
         content = read(text)
     except RecursionError:
@@ -144,6 +144,10 @@ def _both(first: Any, second: Any, key: str, line: int) -> Any:
     for name, value in second.items():
         found[name] = _both(found[name], value, name, line) if name in found else value
     return found
+
+
+def _json(text: str) -> Any:
+    return json.loads(text, parse_float=Decimal)
 
 
 def _toml(text: str) -> Any:
