@@ -11,7 +11,7 @@ from two_arms import written
 
 import zwidth as zw
 from zwidth.data.diagnosis import CAUSES
-from zwidth.data.diagnosis.recording import read_of_table
+from zwidth.data.diagnosis.recording import Told, read_of_table
 from zwidth.data.diagnosis.stated import compare
 from zwidth.data.logs.table import Table, in_pieces
 
@@ -168,7 +168,7 @@ def test_both_forces_of_a_served_loop_are_known():
         read=lambda names: in_pieces("run.mcap", columns, names),
         means={"time": "time_s", "position": "position_m", "hand_force": None, "actuator_force": "force_N"},
     )
-    taken = read_of_table(table, {}, {}, {}, {})
+    taken = read_of_table(table, Told({}, {}, {}, {}))
     assert taken.commanded is not None
     assert taken.applied is not None
     assert not any("taken as the force" in finding for finding in taken.findings)

@@ -8,7 +8,7 @@ import pytest
 from zwidth.data.diagnosis import drive, law, vibration
 from zwidth.data.diagnosis.evidence import Evidence, gather
 from zwidth.data.diagnosis.reason import doubt
-from zwidth.data.diagnosis.recording import Recording, read_of_table
+from zwidth.data.diagnosis.recording import Recording, Told, read_of_table
 from zwidth.data.logs.table import Table, in_pieces
 from zwidth.model.device import Device
 
@@ -225,6 +225,6 @@ def test_a_motors_force_of_the_other_sign_is_turned_and_said():
         units=dict.fromkeys(columns),
         read=lambda names: in_pieces("log.csv", columns, names),
     )
-    taken = read_of_table(table, {}, {}, {}, {})
+    taken = read_of_table(table, Told({}, {}, {}, {}))
     assert taken.applied == pytest.approx(columns["commanded_force_N"])
     assert any("other sign" in finding for finding in taken.findings)

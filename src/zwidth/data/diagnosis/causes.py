@@ -28,7 +28,6 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
 
-
 SURE = 0.6
 """A cause that is less likely than this is not named."""
 
@@ -46,13 +45,11 @@ class Cause:
     """One reason for a vibration."""
 
     name: str
-    """In a few words."""
     because: str
     """What happens, for people."""
     shown: Callable[[Evidence], bool]
     """Whether this recording can show it at all."""
     evidence: Callable[[Evidence], Iterator[str]]
-    """The numbers that speak for it."""
     record: str
     """What to record where it is likely and not shown."""
 
@@ -399,7 +396,6 @@ CAUSES: Mapping[str, Cause] = {
         ),
     )
 }
-"""The registry of causes."""
 
 
 def features(seen: Evidence) -> dict[str, float]:

@@ -28,7 +28,6 @@ from zwidth.quantity.text import shown
 
 # One number that is lowered until the verdict is passive, with a margin: of a loop as of a pair.
 
-
 PASSIVE = ("passive", "passive in contact")
 """Outcomes that a change may have."""
 
@@ -71,7 +70,6 @@ class Lowered:
 
 
 def lowered_to(name: str, current: float, to: float, unit: str) -> str:
-    """What to do, in words."""
     return f"lower the {name} from {shown(current, unit, 3)} to {shown(to, unit, 3)}"
 
 
@@ -109,7 +107,6 @@ def rounded(value: float) -> float:
 
 
 def text_of(value: float) -> str:
-    """The decimal that is meant."""
     return f"{value:.6g}"
 
 
@@ -137,7 +134,6 @@ class _Loop:
     stated: Environment | None = None
 
     def built(self, **changes: float) -> tuple[Device, Environment]:
-        """With some numbers changed."""
         at = {**self.__dict__, **changes}
         device: Device = self.device.replace(delay=text_of(at["delay"]))
         if at["drive_damping"]:

@@ -47,7 +47,6 @@ TERMS = (
     "drive damping",
     "actuator limit",
 )
-"""The terms of the energy that goes in."""
 
 _ALIKE = 2e-3
 """Share of the applied force's variance by which it may differ from the command and be the same."""
@@ -91,13 +90,11 @@ class Evidence:
     """Everything that was measured in a recording of a vibration."""
 
     vibration: Vibration
-    """Where, how fast, how far."""
     loop_period: float
     """[s] T of the loop."""
     resolution: float
     """[m; rad] Δ; 0 where none is seen."""
     law: Law | None
-    """What the force was computed from; None where it does not follow the motion."""
     drive: Drive | None
     """What lies between the two forces; None where one was recorded."""
     amplitude: float
@@ -118,11 +115,8 @@ class Evidence:
     standing: float
     """Share of the time in which it stands, where a sine does so for a sixteenth."""
     distortion: float
-    """Harmonics of the motion against its frequency."""
     roles: tuple[str, ...]
-    """Which forces the file holds: "commanded", "applied", or both."""
     known: Known
-    """The device's numbers."""
     rotary: bool
     """Of a wheel, a knob, a joint."""
     moves_as: complex | None
@@ -211,6 +205,7 @@ def gather(
     motion = _Motion(xs, vibration.angular, file.loop_period, vibration.frequency, period)
     held, needed = motion.phasors(force), motion.needed(known)
     F = held * (1 if applied is not None else motion.late(delay))
+    aims = (file.x - file.error)[file.steady]
     lost = None
     if known.damping is not None:
         viscous = np.pi * motion.omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
@@ -241,13 +236,10 @@ def gather(
         by_inside=fitted.by_inside,
         ramps=None if applied is None else drive.ramps(applied),
         stated=fitted.stated,
-        aimed=None if recording.target is None else _aimed(file, vibration, X),
+        aimed=None
+        if recording.target is None
+        else float(abs(phasors(aims, vibration.frequency, period)[0]) / abs(X)),
     )
-
-
-def _aimed(file: _Aligned, vibration: Vibration, X: complex) -> float:
-    target = (file.x - file.error)[file.steady]
-    return float(abs(phasors(target, vibration.frequency, file.period)[0]) / abs(X))
 
 
 def _aligned(recording: Recording, vibration: Vibration, known: Known) -> _Aligned:

@@ -48,8 +48,6 @@ _COMBINATIONS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Law:
-    """What the force was computed from."""
-
     stiffness: float
     damping: float
     """K [N/m; N·m/rad] and B [N·s/m; N·m·s/rad]."""
@@ -59,7 +57,6 @@ class Law:
     compensation_speed: float
     """F [N; N·m] along the motion, 0 for none; v_s [m/s; rad/s]."""
     lag: float
-    """[s] s, from the position in a row to the force in it."""
     unexplained: float
     """Share of the force's variance that the law leaves over."""
     limited: float
@@ -229,15 +226,13 @@ def _tried(data: _Data, lag: float, part: list[int], terms: Array, offset: float
 
 
 def _bent(speed: Array, least: float) -> Array:
-    bent: Array = np.tanh(speed / least) if least > 0 else np.sign(speed)
-    return bent
+    return np.asarray(np.tanh(speed / least) if least > 0 else np.sign(speed))
 
 
 def _compensated(best: _Tried, position: Array, times: Array, loop_period: float) -> Array:
     before = np.interp(times - best.lag - loop_period, times, position)
     move = (np.interp(times - best.lag, times, position) - before) / loop_period
-    force: Array = -best.compensation * _bent(move, best.speed)
-    return force
+    return np.asarray(-best.compensation * _bent(move, best.speed))
 
 
 def _away(force: Array) -> Rows:
@@ -261,8 +256,7 @@ def _beside(at: Rows) -> Rows:
     beside = np.zeros_like(at)
     beside[1:] |= at[:-1]
     beside[:-1] |= at[1:]
-    both: Rows = at & beside
-    return both
+    return np.asarray(at & beside)
 
 
 def _speeds(position: Array, period: float) -> list[float]:

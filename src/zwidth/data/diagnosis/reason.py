@@ -32,7 +32,6 @@ from zwidth.quantity.text import shown
 if TYPE_CHECKING:
     import xarray as xr
 
-
 _REGULAR = "a stretch of ten cycles or more in which it shakes, the hand as it was"
 _LAW = "the law that was programmed beside the file (stiffness, virtual damping): its force does not show it"
 _DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate) beside the file: DEVICE"
@@ -180,7 +179,6 @@ def _wanted(
 # The probabilities are of things that shake for one reason and go on to.  What dies out, noise, the hum of
 # the mains, or a column in another unit is none of these, whatever is likeliest among them.
 
-
 _DIES = -0.9
 """Logarithm of the motion's size at the end of the stretch over that at its start."""
 
@@ -260,7 +258,6 @@ _CUT_OFF = 0.3
 
 _FEEDS = 0.7
 """Share of the energy that a drive must add to be what feeds a motion, whatever asks for it."""
-
 
 _MANY_TIMES = 5.0
 """What friction takes, that a damper gives which shakes between two counts: there its own law is rounded."""

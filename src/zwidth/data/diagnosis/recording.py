@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -45,9 +45,7 @@ class Recording:
     """One run without a gap, in SI units."""
 
     source: str
-    """Name of the file, or "arrays"."""
     motion: Motion
-    """"linear" or "rotary"."""
     period: float
     """[s] between two rows; the loop's own sample period may be another."""
     resolution: float
@@ -79,15 +77,15 @@ def read(
             raise InputError("a log has been read already: give columns, units and scale to read_log")
         return _recording(recording, None, recording, ())
     sheet = reading.pop("sheet", None)
-    told = (dict(columns or {}), units or {}, scale or {}, reading)
+    told = Told(dict(columns or {}), units or {}, scale or {}, reading)
     names: list[str] = []
     try:
         if not isinstance(recording, str | PathLike):
             names = [str(name) for name in recording.variables]
-            return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), *told)
+            return _read(names, "the Dataset", lambda **given: Log.from_arrays(recording, **given), told)
         with opened(recording, sheet, columns) as table:
             names = list(table.units)
-            return read_of_table(table, *told)
+            return read_of_table(table, told)
     except _Forceless as error:
         raise InputError(f"{error}{_two_arms(names)}") from None
 
@@ -96,43 +94,41 @@ class _Forceless(InputError):
     """No one column is the actuator's force: there may be two arms."""
 
 
-def read_of_table(
-    table: Table,
-    columns: Mapping[str, str | None],
-    units: Mapping[str, str],
-    scale: Mapping[str, object],
-    reading: Mapping[str, Any],
-) -> Recording:
+class Told(NamedTuple):
+    """What is said of a file, as of `read_log`; `reading` is all that goes on to it as it is."""
+
+    columns: Mapping[str, str | None]
+    units: Mapping[str, str]
+    scale: Mapping[str, object]
+    reading: Mapping[str, Any]
+
+    def arguments(
+        self, columns: Mapping[str, str | None], own: Callable[[Mapping[str, Any]], dict[str, Any]]
+    ) -> dict[str, Any]:
+        """To read a log of these columns, with what its own is of the units and of the scales."""
+        tables = {"units": own(self.units), "scale": own(self.scale)}
+        return {"columns": columns, **{k: table for k, table in tables.items() if table}, **self.reading}
+
+
+def read_of_table(table: Table, told: Told) -> Recording:
     """The same of the table of a file that is open."""
     given = table.means.get("actuator_force")
-    told = (({} if given is None else {"actuator_force": given}) | dict(columns), units, scale, reading)
-    return _read(list(table.units), table.source, lambda **given: log_of(table, **given), *told)
+    told = told._replace(columns=({} if given is None else {"actuator_force": given}) | dict(told.columns))
+    return _read(list(table.units), table.source, lambda **given: log_of(table, **given), told)
 
 
-def _read(
-    names: list[str],
-    source: str,
-    log: Callable[..., Log],
-    columns: Mapping[str, str | None],
-    units: Mapping[str, str],
-    scale: Mapping[str, object],
-    reading: Mapping[str, Any],
-) -> Recording:
+def _read(names: list[str], source: str, log: Callable[..., Log], told: Told) -> Recording:
     """A log for each force that there is, of the same rows."""
-    roles = _roles(names, source, columns)
+    roles = _roles(names, source, told.columns)
     if not roles:
         raise _Forceless(
-            f"{source}: no column is known to be the actuator's force, and without it nobody can "
-            "say where the energy of a vibration comes from; say which with "
-            f'columns={{"{COMMANDED}": …}} for what the law asks for, or '
-            'columns={"actuator_force": …} for what the motor gives; there are '
+            f"{source}: no column is known to be the actuator's force, and without it nobody can say where "
+            f'the energy of a vibration comes from; say which with columns={{"{COMMANDED}": …}} for what the '
+            'law asks for, or columns={"actuator_force": …} for what the motor gives; there are '
             f"{', '.join(names)}{without_effort(names)}"
         )
-    logs = {
-        role: log(**_arguments(role, column, columns, units, scale), **reading)
-        for role, column in roles.items()
-    }
-    target, of_target = _target(names, source, log, columns, units, scale, reading)
+    logs = {role: log(**_arguments(role, column, told)) for role, column in roles.items()}
+    target, of_target = _target(names, log, told)
     first = next(iter(logs.values()))
     supposed = tuple(
         f'"{column}" is taken as the force that the law asked for'
@@ -144,33 +140,26 @@ def _read(
 
 
 def _target(
-    names: list[str],
-    source: str,
-    log: Callable[..., Log],
-    columns: Mapping[str, str | None],
-    units: Mapping[str, str],
-    scale: Mapping[str, object],
-    reading: Mapping[str, Any],
+    names: list[str], log: Callable[..., Log], told: Told
 ) -> tuple[Log | float | None, tuple[str, ...]]:
     """The log whose position is that of the target, or where it stands still, and what is said of it."""
+    columns = told.columns
     likely = [name for name in names if is_target(name) and name not in columns.values()]
     if TARGET not in columns and len(likely) > 1:
         return None, (f'{listed(likely)} may each be the target: say which with columns={{"{TARGET}": …}}',)
     column = columns[TARGET] if TARGET in columns else next(iter(likely), None)
     if column is None:
         return None, ()
-    own = {k: v for k, v in columns.items() if k not in (COMMANDED, TARGET)}
-    arguments: dict[str, Any] = {
-        "columns": {**own, "position": column, "actuator_force": None, "hand_force": None}
-    }
-    for name, table in (("units", units), ("scale", scale)):
-        kept = {k: v for k, v in table.items() if k == "time"}
-        if (of_position := table.get(TARGET, table.get("position"))) is not None:
-            kept["position"] = of_position
-        if kept:
-            arguments[name] = kept
+    chosen = {k: v for k, v in columns.items() if k not in (COMMANDED, TARGET)}
+    chosen |= {"position": column, "actuator_force": None, "hand_force": None}
+
+    def own(table: Mapping[str, Any]) -> dict[str, Any]:
+        position = table.get(TARGET, table.get("position"))
+        time = {k: v for k, v in table.items() if k == "time"}
+        return time if position is None else {**time, "position": position}
+
     try:
-        return log(**arguments, **reading), (f'"{column}" is taken as the position that is aimed at',)
+        return log(**told.arguments(chosen, own)), (f'"{column}" is taken as the position that is aimed at',)
     except Still:
         return 0.0, (f'"{column}", the position that is aimed at, stands still',)
     except InputError as error:
@@ -228,27 +217,17 @@ def without_effort(names: Iterable[str]) -> str:
     )
 
 
-def _arguments(
-    role: str,
-    column: str,
-    columns: Mapping[str, str | None],
-    units: Mapping[str, str],
-    scale: Mapping[str, object],
-) -> dict[str, Any]:
+def _arguments(role: str, column: str, told: Told) -> dict[str, Any]:
     """How to read the log in which the actuator's force is that column."""
-    chosen = {**columns, "actuator_force": column, "hand_force": None}
-    chosen.pop(COMMANDED, None)
-    chosen.pop(TARGET, None)
+    chosen = {k: v for k, v in told.columns.items() if k not in (COMMANDED, TARGET)}
     key = COMMANDED if role == "force" else role
-    given: dict[str, Any] = {"columns": chosen}
-    for name, table in (("units", units), ("scale", scale)):
+
+    def own(table: Mapping[str, Any]) -> dict[str, Any]:
         others = (COMMANDED, TARGET, "actuator_force", "hand_force")
-        own = {k: v for k, v in table.items() if k not in others}
-        if key in table:
-            own["actuator_force"] = table[key]
-        if own:
-            given[name] = own
-    return given
+        kept = {k: v for k, v in table.items() if k not in others}
+        return kept | ({"actuator_force": table[key]} if key in table else {})
+
+    return told.arguments({**chosen, "actuator_force": column, "hand_force": None}, own)
 
 
 def _recording(
@@ -290,8 +269,7 @@ def _at(times: Array, target: Log | float) -> Array:
         return np.full_like(times, target)
     blocks = list(target.blocks())
     known = np.concatenate([block.time for block in blocks])
-    there: Array = np.interp(times, known, np.concatenate([block.position for block in blocks]))
-    return there
+    return np.asarray(np.interp(times, known, np.concatenate([block.position for block in blocks])))
 
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"

@@ -25,7 +25,6 @@ from zwidth.writing import check_target, writing_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
 Changed = TypeVar("Changed", bound=Lowered)
 Seen = TypeVar("Seen")
 Recorded = TypeVar("Recorded")

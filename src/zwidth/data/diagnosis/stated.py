@@ -64,7 +64,6 @@ class Stated:
     damping: float
     """K and B that it has by these names [N/m; N·m/rad], [N·s/m; N·m·s/rad]; 0 where it has none."""
     of_command: bool
-    """True where the force is the command, False where it is the motor's."""
     gain: float
     """g, 1 where the force is the law's own."""
     lag: float

@@ -49,7 +49,6 @@ SHORTEST_CYCLES = 4
 STEADY = 0.95
 """Share of the variance in the frequency and its harmonics from which a stretch is looked at as it is."""
 
-
 _BLOCK = 0.2
 """[s] pieces in which the size of the motion is looked at."""
 

@@ -23,6 +23,8 @@ MOST_READINGS = 200
 
 Delay = RealLike | tuple[RealLike, RealLike]
 
+_WITHOUT = "compensation of friction is left out: the claim is of arms without it"
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -114,7 +116,8 @@ class ArmGains(Shown):
         often = known.rate.value if rate is None else parse_number(rate, "Hz", "rate")
         if often.fraction <= 0:
             raise InputError(f"rate must be > 0, got {float(often):g} Hz: references are sent that often")
-        link = known.link_delay.value if delay is None else delay
+        usual = known.link_delay
+        link = usual.value if delay is None else delay
         there, back = link if isinstance(link, (tuple, list)) and len(link) == 2 else (link, link)
         ways = parse_number(there, "s", "link delay"), parse_number(back, "s", "link delay back")
         inside = self._drive_rate(often, drive_rate)
@@ -137,13 +140,9 @@ class ArmGains(Shown):
             )
         notes = [
             *([f"rate {shown(often, 'Hz')}: {known.rate.source}"] if rate is None else []),
-            *([self._said_of_link(known)] if delay is None else []),
+            *([f"link delay {shown(usual.value, 's')} each way: {usual.source}"] if delay is None else []),
             self._said_of_drives(inside, drive_rate is None, ideal_drive),
-            *(
-                []
-                if compensated
-                else ["compensation of friction is left out: the claim is of arms without it"]
-            ),
+            *([] if compensated else [_WITHOUT]),
             arms.note,
             *self._beyond(known),
         ]
@@ -167,11 +166,6 @@ class ArmGains(Shown):
                     f"{said} of {', '.join(dict.fromkeys(names))} is more than {float(limit.value):g} "
                     f"({limit.source}): decided as it stands in the file"
                 )
-
-    @staticmethod
-    def _said_of_link(known: Family) -> str:
-        delay = known.link_delay
-        return f"link delay {shown(delay.value, 's')} each way: {delay.source}"
 
     def _drive_rate(self, rate: Exact, given: RealLike | None) -> Exact | None:
         if given is not None:

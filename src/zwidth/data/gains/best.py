@@ -33,7 +33,6 @@ _BESIDE = Fraction(1, 512), Fraction(1, 32), Fraction(1, 2)
 _GRID = 8
 """Places at which gains that are passive are looked for; without compensation the first of all is one."""
 
-
 Both = tuple[Gains, Gains]
 
 
@@ -44,11 +43,9 @@ def stiffest(joint: CoupledJoint) -> CoupledJoint | None:
 
 
 def best(joint: CoupledJoint) -> CoupledJoint | None:
-    """The stiffest joint over multiples of the damping, rounded and proved; None where none was found.
-
-    Where the gains have no damping, over B on both sides.  Up to twice b, or twice the damping that the gains
-    have; no more than the drive takes.
-    """
+    """The stiffest joint over multiples of the damping, rounded and proved; None where none was found. Where
+    the gains have no damping, over B on both sides. Up to twice b, or twice the damping that the gains have;
+    no more than the drive takes."""
     one = _direction(joint)
     top = max(abs(v) for gains in one for v in (gains.damping, gains.local_damping))
     own = max(abs(v) for gains in joint.gains for v in (gains.damping, gains.local_damping))
@@ -101,9 +98,7 @@ def required_damping(joint: CoupledJoint) -> float | None:
 
 def passive_compensation(joint: CoupledJoint) -> float | None:
     """How much of its compensation of friction is passive with the gains as they are, at most 1, and proved.
-
-    In hundredths, rounded down; None where none is passive, or there is no compensation.
-    """
+    In hundredths, rounded down; None where none is passive, or there is no compensation."""
     if not joint.is_compensated or not _holds(replace(joint, compensation=Fraction(0))):
         return None
     low, high = 0, 100
@@ -150,10 +145,8 @@ def _ratio(joint: CoupledJoint) -> Fraction:
 
 
 def _largest(joint: CoupledJoint, near: float | None = None) -> float | None:
-    """The largest K of the leader, both sides in proportion, to a thousandth.
-
-    Where it is probably, `near`, is looked at first; it is the same without.
-    """
+    """The largest K of the leader, both sides in proportion, to a thousandth. Where it is probably, `near`,
+    is looked at first; it is the same without."""
     ratio = _ratio(joint)
     try:
         base = joint.pair()

@@ -67,11 +67,9 @@ class _OtherLaw(InputError):
 
 @dataclass(frozen=True)
 class JointLaw:
-    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand.
-
-    `keys` leads to the table of its controller, and `form` is how it has them: "gains" or "joints" below the
-    joint's name, "k_gains" in a list for all joints, "pid" of its one joint.
-    """
+    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand. `keys` leads to the
+    table of its controller, and `form` is how it has them: "gains" or "joints" below the joint's name,
+    "k_gains" in a list for all joints, "pid" of its one joint."""
 
     name: str
     stiffness: Fraction
@@ -84,37 +82,22 @@ class JointLaw:
 
 @dataclass(frozen=True)
 class CartesianGains:
-    """The diagonal of K and D of an impedance at the end: x, y, z, and about x, y, z.
-
-    Attributes
-    ----------
-    stiffness
-        [N/m], [N·m/rad].
-    damping
-        [N·s/m], [N·m·s/rad].
-    nullspace, nullspace_damping
-        Of the joints, projected into what does not move the end [N·m/rad], [N·m·s/rad]; 0: none.
-    rate
-        Of the controller [Hz]; None where the file does not say.
-    source
-        Where they stand.
-    factors
-        ζ of each.
-    keys
-        That lead to the table of the controller.
-    of_task
-        True of CRISP, which has a key for each axis.
-    """
+    """The diagonal of K and D of an impedance at the end: x, y, z, and about them."""
 
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
+    """[N/m], [N·m/rad]; [N·s/m], [N·m·s/rad]."""
     nullspace: float
     nullspace_damping: float
+    """Of the joints, projected into what does not move the end [N·m/rad], [N·m·s/rad]; 0: none."""
     rate: Fraction | None
+    """Of the controller [Hz]; None where the file does not say."""
     source: str
     factors: tuple[float, ...] = (1.0,) * 6
+    """ζ of each."""
     keys: tuple[str, ...] = ()
     of_task: bool = False
+    """Of CRISP, which has a key for each axis."""
 
     def wall(self, turns: int) -> MatrixWall:
         """As a wall for a hand at a point, 0 turns, or in pose, 3."""
@@ -252,7 +235,6 @@ def read_controllers(path: str | Path) -> Controllers:
 
 
 def is_of_controllers(table: GainTable) -> bool:
-    """True for a parameter file of ROS, or with gains of one of its controllers."""
     return next(_controllers(table), None) is not None or any(_fits(inner) for inner in table.below())
 
 
@@ -295,7 +277,6 @@ def _is_cartesian(table: GainTable) -> bool:
 
 
 def _admittance(table: GainTable) -> str | None:
-    """The key by which an admittance is known."""
     found = (key for key in _OF_ADMITTANCE if not _inner(table, key).keys().isdisjoint(_MOTIONS))
     return next(found, "admittance" if _inner(table, "admittance") else None)
 
@@ -313,9 +294,7 @@ def _joints(table: GainTable) -> Iterator[JointLaw]:
             "runs it"
         )
     if "k_gains" in table:
-        stiffness = table.numbers("k_gains", "N*m/rad")
-        damping = table.numbers("d_gains", "N*m*s/rad", len(stiffness))
-        for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
+        for n, (k, d) in enumerate(zip(*table.springs("k_gains", "d_gains"), strict=True)):
             where = table.where(f"k_gains[{n}]")
             yield JointLaw(f"joint{n + 1}", k, Fraction(0), d, where, table.keys, "k_gains")
     if _inner(table, "pid"):

@@ -20,7 +20,6 @@ from zwidth.quantity.exact import Exact
 # v_des is 0: kd is of the follower's own speed.  The leader is limp: there is no law of both arms.  Source:
 # huggingface/lerobot, robots/openarm_follower.
 
-
 LEROBOT = "lerobot-damiao"
 
 _LEROBOT_NOTES = (
@@ -30,7 +29,6 @@ _LEROBOT_NOTES = (
 
 
 def fits_lerobot(table: GainTable) -> bool:
-    """True where the lists stand somewhere."""
     return next(_places(table), None) is not None
 
 
@@ -43,8 +41,7 @@ def read_lerobot(tables: Sequence[GainTable], both: bool) -> ArmGains:
             "of its own"
         )
     (place,) = places
-    stiffness = place.numbers("position_kp", "N*m/rad")
-    damping = place.numbers("position_kd", "N*m*s/rad", len(stiffness))
+    stiffness, damping = place.springs("position_kp", "position_kd")
     motors = family(LEROBOT).motors
     joints = []
     for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
@@ -66,7 +63,6 @@ def _places(table: GainTable) -> Iterator[GainTable]:
 # P counts, U the supply voltage, k_t and R the motor's constants at the output, e the efficiency.  Source:
 # Rhoban/bam, bam/feetech/actuator.py and its fitted parameters; 0.166 was measured there.  LeRobot drives the
 # follower alone: the leader is limp.
-
 
 FEETECH = "lerobot-feetech"
 
@@ -134,7 +130,6 @@ def _servos(table: GainTable) -> Iterator[GainTable]:
 # row is made for either end.  Source: agilexrobotics/piper_sdk, asserts/Q&A.MD; agilexrobotics/pyAgxArm#52,
 # #59.
 
-
 PIPER = "piper"
 
 _UNSURE = 3
@@ -150,19 +145,15 @@ _PIPER_NOTES = (
 
 
 def fits_piper(table: GainTable) -> bool:
-    """True for a file with such a table."""
     return "piper" in table
 
 
 def read_piper(tables: Sequence[GainTable], both: bool) -> ArmGains:
-    """The numbers of one file."""
     if len(tables) > 1:
         raise InputError("one file gives the numbers of a Piper; with --both they are taken for both arms")
     table = tables[0].table("piper")
-    stiffness = table.numbers("kp", "N*m/rad")
-    damping = table.numbers("kd", "N*m*s/rad", len(stiffness))
     joints = []
-    for n, (k, d) in enumerate(zip(stiffness, damping, strict=True)):
+    for n, (k, d) in enumerate(zip(*table.springs("kp", "kd"), strict=True)):
         for factor in (Fraction(1), _HIDDEN) if n < _UNSURE else (Fraction(1),):
             gains = Gains(k * factor, local_damping=d * factor, source=table.where(f"kp[{n}]"))
             name = f"J{n + 1}" + (f" ×{factor}" if n < _UNSURE else "")
@@ -179,7 +170,6 @@ def read_piper(tables: Sequence[GainTable], both: bool) -> ArmGains:
 # is of the follower's own speed, and the leader has no damping of its own.  Source: i2rt-robotics/i2rt,
 # examples/minimum_gello and robots/motor_chain_robot.py.
 
-
 I2RT = "i2rt"
 
 _I2RT_NOTES = (
@@ -191,7 +181,6 @@ _I2RT_NOTES = (
 
 
 def fits_i2rt(table: GainTable) -> bool:
-    """True for an arm or a gripper of i2rt."""
     return ("kp" in table and "kd" in table and "motor_list" in table) or "motor_kp" in table
 
 
@@ -206,8 +195,7 @@ def read_i2rt(tables: Sequence[GainTable], bilateral_kp: Fraction) -> ArmGains:
     if len(arms) > 2:
         raise InputError(f"a pair has two arms, got files of {len(arms)}")
     leader, follower = arms[0], arms[-1]
-    stiffness, damping = _lists(follower)
-    pulled = _lists(leader)[0]
+    (stiffness, damping), (pulled, _) = (arm.springs("kp", "kd") for arm in (follower, leader))
     if len(pulled) != len(stiffness):
         raise InputError(
             f"{leader.label} has {len(pulled)} joints and {follower.label} {len(stiffness)}; each joint is "
@@ -242,11 +230,6 @@ def read_i2rt(tables: Sequence[GainTable], bilateral_kp: Fraction) -> ArmGains:
     return ArmGains(I2RT, joints, tuple(notes), drives=True)
 
 
-def _lists(table: GainTable) -> tuple[list[Fraction], list[Fraction]]:
-    stiffness = table.numbers("kp", "N*m/rad")
-    return stiffness, table.numbers("kd", "N*m*s/rad", len(stiffness))
-
-
 def _compensation_of_i2rt(table: GainTable, count: int) -> list[FrictionCompensation]:
     """breakaway tanh(v/eps), of the versions that had it."""
     if "friction_comp" not in table:
@@ -275,7 +258,6 @@ def _motor(table: GainTable, joint: int) -> str:
 # is in the code (ComputeFriction), although the comment beside the numbers says tanh(k q̇).  Source: the file
 # src/controller/control.cpp of that repository, function bilateral_step.
 
-
 OPENARM = "openarm"
 
 _SIDES = {"leader": "LeaderArmParam", "follower": "FollowerArmParam"}
@@ -300,7 +282,6 @@ _OPENARM_NOTES = (
 
 
 def fits_openarm(table: GainTable) -> bool:
-    """True where one of its keys is there."""
     return any(key in table for key in (*_SIDES.values(), "Bilateral"))
 
 
@@ -357,9 +338,8 @@ def refuse_observers(table: GainTable) -> None:
 
 def _gains(table: GainTable) -> list[Gains]:
     refuse_observers(table)
-    stiffness = table.numbers("Kp", "N*m/rad")
+    stiffness, damping = table.springs("Kp", "Kd")
     count = len(stiffness)
-    damping = table.numbers("Kd", "N*m*s/rad", count)
     offset = table.numbers("Fo", "N*m", count) if "Fo" in table else [Fraction(0)] * count
     rows = zip(stiffness, damping, _compensation_of_openarm(table, count), offset, strict=True)
     return [
@@ -391,8 +371,7 @@ def _compensation_of_openarm(table: GainTable, count: int) -> list[FrictionCompe
 
 def _on_the_host(table: GainTable, stock: list[Gains] | None) -> list[Gains]:
     """The leader of a fork over two computers (IS0moto/openarm_teleop)."""
-    stiffness = table.numbers("Kp", "N*m/rad")
-    local = table.numbers("Kd", "N*m*s/rad", len(stiffness))
+    stiffness, local = table.springs("Kp", "Kd")
     if "Kf" in table and any(table.numbers("Kf", "1", len(stiffness))):
         raise InputError(
             f"{table.where('Kf')}: the leader is also given the follower's measured torque; that is no "

@@ -22,8 +22,6 @@ LARGEST_FILE = 1 << 20
 """Bytes; a gain file is a page of text."""
 
 MOST_JOINTS = 64
-"""In one file."""
-
 
 DEEPEST = 4
 """Tables inside tables in which gains are looked for."""
@@ -65,7 +63,6 @@ class GainTable:
             waiting += [(table.table(key), depth + 1) for key in inner if depth < DEEPEST]
 
     def number(self, key: str, unit: str) -> Fraction:
-        """One number."""
         return parse_number(self.values[key], unit, self.where(key)).fraction
 
     def numbers(self, key: str, unit: str, joints: int | None = None) -> list[Fraction]:
@@ -87,6 +84,11 @@ class GainTable:
         return [
             parse_number(value, unit, f"{self.where(key)}[{n}]").fraction for n, value in enumerate(given)
         ]
+
+    def springs(self, stiffness: str, damping: str) -> tuple[list[Fraction], list[Fraction]]:
+        """The lists of the springs and of the dampers of the joints."""
+        found = self.numbers(stiffness, "N*m/rad")
+        return found, self.numbers(damping, "N*m*s/rad", len(found))
 
 
 def read_table(path: str | Path) -> GainTable:

@@ -166,17 +166,12 @@ def loops_of(
         + (": one period, an assumption" if delay is None else ""),
         "each joint by itself: what joints share, gravity and flexible gears are not in the model",
     )
-    return Loops(tuple(_devices(laws, plant, often, late)), often, late, notes)
-
-
-def _devices(
-    laws: tuple[JointLaw, ...], plant: str | Device, rate: Fraction, delay: Fraction
-) -> list[Device]:
-    own = {"rate": Exact(rate), "delay": Exact(delay)}
+    own: dict[str, Any] = {"rate": Exact(often), "delay": Exact(late)}
     if isinstance(plant, Device):
-        return [plant.replace(**own) for _ in laws]
-    rows = plant_of_file(len(laws), plant).follower
-    return [Device(**row, **own, motion="rotary", name=law.name) for law, row in zip(laws, rows, strict=True)]
+        return Loops((plant.replace(**own),) * len(laws), often, late, notes)
+    rows = zip(laws, plant_of_file(len(laws), plant).follower, strict=True)
+    devices = tuple(Device(**row, **own, motion="rotary", name=law.name) for law, row in rows)
+    return Loops(devices, often, late, notes)
 
 
 def wall(law: JointLaw, rate: Fraction) -> Environment:

@@ -78,7 +78,6 @@ class BorneImpedance:
 
     @property
     def size(self) -> int:
-        """How many of the coordinates were asked about: 3 of a point, 6 in pose."""
         return 3 + self.found.question.arm.turns
 
     def _groups(

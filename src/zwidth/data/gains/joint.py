@@ -14,7 +14,6 @@ from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 
 NONE = FrictionCompensation()
-"""No compensation of friction."""
 
 
 @dataclass(frozen=True)
@@ -84,37 +83,23 @@ class JointGains:
 
 @dataclass(frozen=True)
 class CoupledJoint:
-    """A joint with all that its verdict needs.
-
-    Attributes
-    ----------
-    name
-        Of the joint.
-    gains
-        Of leader and follower.
-    devices
-        The joint of leader and follower, without any controller.
-    delay
-        Of the link, there and back [s].
-    drive_rate
-        Of the loop in each drive [Hz]; None where there is none.
-    ideal_drive
-        True: what a drive does with its own speed is a damper.
-    compensation
-        How much of the compensation of friction in the gains there is: 1 for all, 0 for none.
-    largest_stiffness, largest_damping
-        What a drive takes [N·m/rad, N·m·s/rad]; None where that is not known.
-    """
+    """A joint with all that its verdict needs; pairs are of leader and follower."""
 
     name: str
     gains: tuple[Gains, Gains]
     devices: tuple[Device, Device]
+    """Without any controller."""
     delay: tuple[Exact, Exact]
+    """Of the link, there and back [s]."""
     drive_rate: Exact | None
+    """Of the loop in each drive [Hz]; None where there is none."""
     ideal_drive: bool = False
+    """What a drive does with its own speed is a damper."""
     compensation: Fraction = Fraction(1)
+    """How much of the compensation of friction in the gains there is: 1 for all, 0 for none."""
     largest_stiffness: Fraction | None = None
     largest_damping: Fraction | None = None
+    """What a drive takes [N·m/rad, N·m·s/rad]; None where that is not known."""
 
     @property
     def is_ideal(self) -> bool:
@@ -139,7 +124,6 @@ class CoupledJoint:
         return replace(self, devices=(first, second))
 
     def pair(self) -> Pair:
-        """The pair to decide."""
         (leader, its_damping), (follower, damping) = map(self._side, self.devices, self.gains)
         mine, other = self.gains
         laws: dict[str, Any] = {}
@@ -161,7 +145,6 @@ class CoupledJoint:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """The gains of both sides, units in the keys."""
         return {
             side: {
                 "stiffness_N_m_per_rad": float(own.stiffness),

@@ -39,11 +39,9 @@ def parameter_file(
     manager: tuple[str, ...],
     head: Sequence[str],
 ) -> str:
-    """The text of a file with these joints, each with remarks on its "p", "i" and "d", below comments.
-
-    `rate` [Hz] is of the controller manager, below the keys `manager`; one that is no whole number is said in
-    the head alone, and so is that of ROS 1, whose robots have it in their code.
-    """
+    """The text of a file with these joints, each with remarks on its "p", "i" and "d", below comments. `rate`
+    [Hz] is of the controller manager, below the keys `manager`; one that is no whole number is said in the
+    head alone, and so is that of ROS 1, whose robots have it in their code."""
     tree: Tree = {}
     if rate.denominator == 1 and all(law.form != "pid" for law, _ in laws):
         place_of(tree, manager)["update_rate"] = f"{rate}  # Hz, for which the gains are proved"

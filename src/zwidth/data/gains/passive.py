@@ -147,9 +147,9 @@ def passive_gains(
         _Joint(law, device.replace(damping=Exact(part * device.exact("damping"))), loops).nearest(stiffest)
         for law, device in zip(controllers.joints, loops.devices, strict=True)
     )
-    return PassiveGains(
-        controllers, joints, part, loops.rate, loops.delay, (*loops.notes, *_of_encoders(loops.devices))
-    )
+    steps = any(device.exact("resolution") for device in loops.devices)
+    more = () if steps else ("encoder steps are not counted: their size was not given",)
+    return PassiveGains(controllers, joints, part, loops.rate, loops.delay, (*loops.notes, *more))
 
 
 def share_of(given: RealLike) -> Fraction:
@@ -160,11 +160,6 @@ def share_of(given: RealLike) -> Fraction:
             f"share is how much of a joint's damping the gains may use, 0 < share ≤ 1, got {float(part):g}"
         )
     return part
-
-
-def _of_encoders(devices: tuple[Device, ...]) -> Iterator[str]:
-    if not any(device.exact("resolution") for device in devices):
-        yield "encoder steps are not counted: their size was not given"
 
 
 @dataclass(frozen=True)

@@ -141,19 +141,7 @@ class Value:
 
 @dataclass(frozen=True)
 class Family:
-    """What a gain file does not say, as published or assumed.
-
-    Attributes
-    ----------
-    rate, link_delay, drive_rate, position_step
-        [Hz, s, Hz, rad], each with its source.
-    motors
-        Of the joints in the order of the file; none where the file says it.
-    plant
-        The published plant that is taken where none is given; "" where none is published.
-    largest_stiffness, largest_damping
-        What the drive takes [N·m/rad, N·m·s/rad]; None where that is not known.
-    """
+    """What a gain file does not say, as published or assumed."""
 
     name: str
     title: str
@@ -161,10 +149,14 @@ class Family:
     link_delay: Value
     drive_rate: Value
     position_step: Value
+    """[Hz, s, Hz, rad]"""
     motors: tuple[str, ...]
+    """Of the joints in the order of the file; none where the file says it."""
     plant: str
+    """The published one that is taken where none is given; "" where none is published."""
     largest_stiffness: Value | None = None
     largest_damping: Value | None = None
+    """What the drive takes [N·m/rad, N·m·s/rad]; None where that is not known."""
 
 
 @dataclass(frozen=True)
@@ -205,7 +197,6 @@ class Servo:
 
 
 def family(name: str) -> Family:
-    """What is published about a family."""
     table = _data()[name]
     values = {
         key: Value(Exact(row["value"]), row["source"])
@@ -218,7 +209,6 @@ def family(name: str) -> Family:
 
 
 def plants() -> Mapping[str, PublishedPlant]:
-    """All published plants by name."""
     return {name: _plant(name, table) for name, table in _data()["plants"].items()}
 
 

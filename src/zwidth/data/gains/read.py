@@ -27,7 +27,6 @@ FAMILIES: Mapping[str, Callable[[GainTable], bool]] = MappingProxyType(
         PIPER: families.fits_piper,
     }
 )
-"""By name, what recognises a file."""
 
 _WANTED = {
     OPENARM: "LeaderArmParam, FollowerArmParam or Bilateral",
@@ -36,7 +35,6 @@ _WANTED = {
     LEROBOT: "position_kp",
     PIPER: "piper",
 }
-"""What is looked for in a file."""
 
 
 def read_gains(

@@ -33,7 +33,6 @@ from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 TIME = "time"
 """The column of stamps: of the topic that holds the position."""
 
@@ -60,7 +59,6 @@ class _Column(NamedTuple):
 
 
 def bag_table(path: Path) -> Table:
-    """The numbers in a bag."""
     columns: dict[str, _Column] = {}
     units: dict[str, str | None] = {TIME: "ns"}
     bag = _opened(path)
@@ -201,7 +199,6 @@ def _is_number(value: Any) -> bool:
 
 
 def _are_names(value: Any) -> bool:
-    """Whether it is a list of texts that tell its places apart."""
     texts = isinstance(value, list) and bool(value) and all(isinstance(v, str) and v for v in value)
     return texts and len(set(value)) == len(value)
 
@@ -328,7 +325,6 @@ def _nearest(wanted: NDArray[Any], stamps: NDArray[Any], values: NDArray[Any]) -
 # A bag says of each chunk what it becomes, and an index says where the chunks are; the library believes
 # both, and holds neither against what is in the file before it is expanded.
 
-
 _CODECS = ("lz4", "bz2")
 _ROS1_START, _ROS1_HEADER, _ROS1_CHUNK, _ROS1_INDEX = 13, b"\x03", b"\x05", b"\x06"
 _STEP = 2**20
@@ -344,7 +340,6 @@ class _Piece(NamedTuple):
 
 
 def check_bag(path: Path) -> None:
-    """Refuse a bag of which a piece would become too large."""
     files = [file for file in sorted(path.iterdir()) if file.is_file()] if path.is_dir() else [path]
     for file in files:
         with open(file, "rb") as opened:
@@ -360,7 +355,6 @@ def check_bag(path: Path) -> None:
 
 
 def _check_packed(path: Path) -> None:
-    """Count what the library would unpack to the disk, and then trust."""
     with Bounded(path, pa.input_stream(str(path), compression="zstd")) as whole:
         if whole.read(_STEP).startswith(MAGIC[:5]):
             raise InputError(f"{path} is not read: compressed are its pieces, and it again; unpack it first")

@@ -44,12 +44,10 @@ _DAY = 86400.0
 
 
 def is_nothing(field: str) -> bool:
-    """True where a cell says that there is no number."""
     return field.lower() in NOTHING
 
 
 def is_number(field: str) -> bool:
-    """True where a cell is a number however it is written."""
     return bool(_PLAIN.match(field) or _GROUPED.match(field)) or field.lower() in _INFINITE | _TRUTH
 
 
@@ -190,7 +188,6 @@ def opened_text(path: Path) -> IO[bytes] | Bounded | Records:
 
 
 def text_of(start: bytes, source: str) -> str:
-    """The text that bytes at the start of a file are."""
     text = _decoded(start)
     if _CONTROL.search(text[:4096]):
         raise InputError(f"{source} is no text: its first bytes hold control characters; which format is it?")

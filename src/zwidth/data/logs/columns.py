@@ -30,11 +30,9 @@ class Meaning:
     """What the columns of a table are."""
 
     columns: Mapping[str, str]
-    """The column of each quantity that there is."""
     factors: Mapping[str, float]
     """SI per number in the column, of each."""
     motion: Motion
-    """"linear" or "rotary"."""
     resolution: float | None
     """[m; rad] stated step of the encoder; None if nobody stated it."""
 
@@ -43,11 +41,11 @@ def meaning_of(
     table: Table,
     columns: Mapping[str, str],
     *,
-    units: Mapping[str, str] | None,
-    scale: Mapping[str, object] | None,
-    resolution: object,
-    counts_per_turn: object,
-    motion: str | None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    resolution: object = None,
+    counts_per_turn: object = None,
+    motion: str | None = None,
 ) -> Meaning:
     """Factors to SI of every column, and whether the device turns."""
     _check_keys("units", units, columns)
@@ -59,7 +57,8 @@ def meaning_of(
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
     if resolution is None and counts_per_turn is None:
-        resolution = _resolution(table)
+        values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
+        resolution = next((float(v) for v in values if v is not None), None)  # of a trace of ours
     if "time" in columns and stated["time"] is None and not isinstance(scale.get("time"), str):
         _ask_for_unit_of_time(table, columns["time"])
     turning = _turning(motion, stated, scale, resolution, counts_per_turn)
@@ -70,8 +69,7 @@ def meaning_of(
         if quantity == "position" and _is_counts(stated[quantity]) and not isinstance(times, str):
             if step is None:
                 raise InputError(
-                    f'{table.source}: "{column}" is in counts; say what a count is with '
-                    'resolution="22.4 um" '
+                    f'{table.source}: "{column}" is in counts; say what a count is with resolution="22.4 um" '
                     "or counts_per_turn=4096"
                 )
             factors[quantity] = step if times is None else step * float(parse_number(times, "1", "scale"))
@@ -94,12 +92,6 @@ def is_unit(text: str) -> bool:
     except InputError:
         return _is_counts(unit)
     return True
-
-
-def _resolution(table: Table) -> float | None:
-    """The resolution that a trace of ours says it has."""
-    values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
-    return next((float(v) for v in values if v is not None), None)
 
 
 def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
@@ -305,7 +297,6 @@ def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:
 # brackets, after a slash or an underscore.  What is left is compared with the words below, the last part of a
 # path alone ("log/left/position" is "position").  Two candidates are never chosen between.
 
-
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 
 _WORDS: dict[str, tuple[str, ...]] = {
@@ -396,7 +387,9 @@ def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
         if word.endswith("_" + suffix) and len(word) > len(suffix) + 1:
             return _word(word[: -len(suffix) - 1]), suffix
     plain = _word(word)
-    return plain, plain if plain in ("counts", "ticks", "seconds", "sec") else _counted(plain)
+    if plain in ("encoder_counts", "enc_counts"):
+        return plain, "counts"
+    return plain, plain if plain in ("counts", "ticks", "seconds", "sec") else None
 
 
 def role_of_force(column: str) -> str | None:
@@ -430,10 +423,6 @@ def is_target(column: str) -> bool:
     alone = bool(words) and words <= {"target", "goal", "setpoint", "reference"}
     aimed, place = set(_AIMED.split()), set(_OF_A_PLACE.split())
     return alone or (words <= aimed | place and bool(words & aimed) and bool(words & place))
-
-
-def _counted(word: str) -> str | None:
-    return "counts" if word in ("encoder_counts", "enc_counts") else None
 
 
 def _word(text: str) -> str:

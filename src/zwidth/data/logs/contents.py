@@ -29,7 +29,6 @@ OF_A_LOOP = ("sample", "time_s", "late_s", "status", "phase", "law")
 """Of the loop itself: which sample, when, how late; the answer; what the loop was doing, by which law."""
 
 _NUMBERS = ("origin_m", "origin_rad", "sense", "resolution_m", "resolution_rad")
-"""What is computed with, where a recording says it of itself."""
 
 _UNITS = {
     "_m_per_s": "m/s",
@@ -49,18 +48,14 @@ class Head:
     """What is known before the first row."""
 
     columns: tuple[str, ...]
-    """Names, units in them."""
     motion: str
-    """"linear" or "rotary"."""
     period: float
     """T [s]."""
     title: str
-    """What was served, in words."""
     about: dict[str, Any]
     """Whatever else was told: device, environment, laws, safety, versions; as JSON has it."""
 
     def text(self, **more: Any) -> str:
-        """All of it as JSON, and what is said more."""
         return as_json({"format": FORMAT, **asdict(self), **more})
 
 
@@ -89,7 +84,6 @@ class Part(NamedTuple):
 
 
 def head_in(text: str | bytes, source: object) -> tuple[Head, dict[str, Any]]:
-    """The head in a text of JSON, and what is said more."""
     try:
         said = from_json(text)
         form = said.pop("format")
@@ -120,7 +114,6 @@ def _check(head: Head, source: object) -> None:
 
 
 def rows_lost(events: list[dict[str, Any]]) -> int:
-    """How many rows these events say were lost."""
     counts = (event.get("rows") for event in events if event.get("event") == ROWS_LOST)
     return sum(count for count in counts if isinstance(count, int))
 

@@ -33,7 +33,6 @@ MOST_SAMPLED = 2000
 _DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 _NUMBER_AND_UNIT = re.compile(r"[+-]?\d[\d.,]*\s*[^\W\d_]+\Z")
 
-
 Sample = tuple[tuple[str, ...], ...]
 """The first rows of numbers, split."""
 
@@ -42,8 +41,6 @@ Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
 
 @dataclass(frozen=True, kw_only=True)
 class Layout:
-    """The layout of a text."""
-
     delimiter: str
     """One character; a space stands for any white space."""
     decimal: str
@@ -57,7 +54,6 @@ class Layout:
     header: str
     """The line with the names, as it stands, or ""."""
     sample: Sample
-    """The first rows, split."""
     comments: tuple[str, ...]
     """Lines before the numbers that are comments."""
 
@@ -70,7 +66,6 @@ class Layout:
         return [_kind(self.fields(name)) for name in self.names]
 
     def fields(self, column: str) -> list[str]:
-        """The first rows of a column."""
         return [row[self.names.index(column)] for row in self.sample]
 
 
@@ -103,10 +98,8 @@ _OF_A_BUS = re.compile(
 
 @lru_cache(maxsize=2)
 def layout_of(text: str, source: str, whole: bool) -> Layout:
-    """The layout of a text that starts so; `whole` says that this is all of it.
-
-    A file that is opened again, as to see first whether it holds two arms, is not looked at again.
-    """
+    """The layout of a text that starts so; `whole` says that this is all of it. A file that is opened again,
+    as to see first whether it holds two arms, is not looked at again."""
     lines = text.splitlines()
     if not whole and len(lines) > 1:
         lines = lines[:-1]  # the last is cut in the middle
@@ -137,7 +130,6 @@ def _most_columns(lines: list[str], rows: list[tuple[int, str]]) -> _Split:
 
 
 def split(line: str, delimiter: str) -> list[str]:
-    """The fields of a line, without their quotes."""
     if delimiter == " ":
         return line.split()
     if '"' in line:
@@ -150,7 +142,6 @@ def split(line: str, delimiter: str) -> list[str]:
 
 
 def is_comment(line: str) -> bool:
-    """True where a line is no row."""
     return line.lstrip().startswith(_COMMENTS)
 
 
@@ -253,15 +244,17 @@ def laid_out(
     above = [line for line in lines[:first] if line.strip()]
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]
-    header, names, units_line = _header(plain, comments, delimiter, _filled(sample, columns))
+    filled = [any(row[k] for row in sample) for k in range(columns)]
+    header, names, units_line = _header(plain, comments, delimiter, filled)
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
     units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
+    fields = [field for row in sample for field in row]
+    commas = delimiter != "," and any("," in field for field in fields)
     return Layout(
         delimiter=delimiter,
-        decimal=decimal_of(field for row in sample for field in row)
-        or ("," if delimiter != "," and _commas(sample) else "."),
+        decimal=decimal_of(fields) or ("," if commas else "."),
         names=tuple(names),
         units=units,
         skipped=lines.index(header) + 1 if header.startswith(LABVIEW) else first,  # rows with comments count
@@ -269,15 +262,6 @@ def laid_out(
         sample=sample,
         comments=comments,
     )
-
-
-def _commas(sample: Sample) -> bool:
-    return any("," in field for fields in sample for field in fields)
-
-
-def _filled(sample: Sample, columns: int) -> list[bool]:
-    """Of each column whether anything stands in it."""
-    return [any(row[k] for row in sample) for k in range(columns)]
 
 
 def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
@@ -292,10 +276,8 @@ def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:
 def _header(
     plain: list[str], comments: tuple[str, ...], delimiter: str, filled: list[bool]
 ) -> tuple[str, list[str], list[str]]:
-    """The line with the names, its fields, and the fields of the line of units below it.
-
-    A number above a column in which nothing stands is a note.  Delimiters that end each row may be missing.
-    """
+    """The line with the names, its fields, and the fields of the line of units below it. A number above a
+    column in which nothing stands is a note. Delimiters that end each row may be missing."""
     if head := next((line for line in reversed(plain) if line.startswith(LABVIEW + delimiter)), ""):
         return _of_labview(head, plain, delimiter, filled)
     columns = len(filled)

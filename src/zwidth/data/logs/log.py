@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
     from zwidth.native.compiled import Array
 
-
 SAME = 1e-3
 """Relative difference below which two sample periods, or two resolutions, are one that was measured twice."""
 

@@ -40,7 +40,6 @@ _Part = tuple[str, int | None, pa.DataType]
 
 
 def parquet_table(path: Path) -> Table:
-    """The table in a Parquet file."""
     schema = pq.read_schema(path)
     again = next((name for name in schema.names if schema.names.count(name) > 1), None)
     if again is not None:
@@ -69,7 +68,6 @@ def parquet_table(path: Path) -> Table:
 
 
 def _parts(path: Path, field: pa.Field, dataset: Mapping[str, Any]) -> Iterator[tuple[str, _Part]]:
-    """The columns in a field, by name."""
     types, kind = pa.types, field.type
     if _is_number(kind) or _is_time(kind):
         unnamed = _UNNAMED.fullmatch(field.name) and _is_time(kind)
@@ -103,7 +101,6 @@ def _unit(field: pa.Field) -> str | None:
 
 
 def _first(path: Path, name: str) -> Any:
-    """What is in the first row."""
     check_parquet(path, {name})
     with pq.ParquetFile(path, pre_buffer=False) as file:
         batch = next(file.iter_batches(batch_size=1, columns=[name]), None)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from zwidth.data.logs.columns import QUANTITIES, meaning_of, recognise
 from zwidth.data.logs.log import Log, contents, stated_period
@@ -57,18 +58,11 @@ def read_log(
     InputError
         If the file cannot be read, a column or its unit is not known, or nothing can be learnt from it.
     """
+    reading: dict[str, Any] = {"columns": columns, "units": units, "scale": scale, "motion": motion}
+    reading |= {"sample_rate": sample_rate, "sample_period": sample_period}
+    reading |= {"resolution": resolution, "counts_per_turn": counts_per_turn}
     with opened(path, sheet, columns) as table:
-        return log_of(
-            table,
-            columns=columns,
-            units=units,
-            scale=scale,
-            sample_rate=sample_rate,
-            sample_period=sample_period,
-            resolution=resolution,
-            counts_per_turn=counts_per_turn,
-            motion=motion,
-        )
+        return log_of(table, **reading)
 
 
 _LOOKED_AT = 2**24
@@ -79,10 +73,8 @@ _LOOKED_AT = 2**24
 def opened(
     path: str | PathLike[str], sheet: str | None = None, columns: Mapping[str, str | None] | None = None
 ) -> Iterator[Table]:
-    """The table of a file, from which several logs may be made; what cannot be read inside is refused.
-
-    Of a workbook it is that of the sheet, or of the one sheet that has these columns and a position.
-    """
+    """The table of a file, from which several logs may be made; what cannot be read inside is refused. Of a
+    workbook it is that of the sheet, or of the one sheet that has these columns and a position."""
     with readable(str(path)):
         table = _one_sheet(table_of_file(Path(path), sheet), columns or {})
         yield with_whole_stamps(table, (columns or {}).values())
@@ -109,27 +101,14 @@ def log_of(
     table: Table,
     *,
     columns: Mapping[str, str | None] | None = None,
-    units: Mapping[str, str] | None = None,
-    scale: Mapping[str, object] | None = None,
     sample_rate: object = None,
     sample_period: object = None,
-    resolution: object = None,
-    counts_per_turn: object = None,
-    motion: Motion | None = None,
+    **meant: Any,
 ) -> Log:
     """The log of some columns of a table; arguments as of `read_log`."""
     period = stated_period(sample_rate, sample_period)
     names = recognise(table.units, {**table.means, **(columns or {})}, table.source)
-    meaning = meaning_of(
-        table,
-        names,
-        units=units,
-        scale=scale,
-        resolution=resolution,
-        counts_per_turn=counts_per_turn,
-        motion=motion,
-    )
-    return Log(**contents(table, meaning, period))
+    return Log(**contents(table, meaning_of(table, names, **meant), period))
 
 
 def table_of_file(path: Path, sheet: str | None = None) -> Table:
@@ -149,7 +128,10 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         )
     if not path.exists():
         raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}")
-    start = b"" if path.is_dir() else _first_bytes(path)
+    start = b""
+    if not path.is_dir():
+        with open(path, "rb") as file:
+            start = file.read(520)
     if start[:4] == b"PK\x03\x04":
         return _in_archive(path, sheet)
     if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
@@ -172,8 +154,11 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         from zwidth.data.logs.scientific import matlab_table
 
         return matlab_table(path)
-    if start.startswith(b"\x89MCAP") and (table := _recorded(path)) is not None:
-        return table
+    if start.startswith(b"\x89MCAP"):
+        from zwidth.data.logs.served import mcap_head, served_table
+
+        if (head := mcap_head(path)) is not None:  # of a served loop
+            return served_table(path, head)
     if path.is_dir() or start.startswith((b"\x89MCAP", b"#ROSBAG V", b"SQLite format")):
         from zwidth.data.logs.bags import bag_table
 
@@ -191,13 +176,10 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
 
 
 def _in_archive(path: Path, sheet: str | None) -> Table:
-    """The table of a zip archive, if it is a workbook."""
-    from zwidth.data.logs.workbook import kind_of_archive
+    from zwidth.data.logs.workbook import kind_of_archive, workbook_table
 
     kind = kind_of_archive(path)
     if kind == "workbook":
-        from zwidth.data.logs.workbook import workbook_table
-
         return workbook_table(path, sheet)
     if kind == "arrays":
         from zwidth.data.logs.scientific import numpy_table
@@ -219,16 +201,3 @@ def _old_office(path: Path) -> str:
         if locked
         else "a spreadsheet of an old office program; save it as .xlsx, or the sheet as CSV"
     )
-
-
-def _recorded(path: Path) -> Table | None:
-    """The table of a recording of a served loop; None if it is none."""
-    from zwidth.data.logs.served import mcap_head, served_table
-
-    head = mcap_head(path)
-    return None if head is None else served_table(path, head)
-
-
-def _first_bytes(path: Path) -> bytes:
-    with open(path, "rb") as file:
-        return file.read(520)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from zwidth.native.compiled import Array
 
-
 DATE = 1e8
 """[s] Stamps beyond it, three years, are dates."""
 
@@ -42,12 +41,10 @@ class Rows(NamedTuple):
     actuator_force: Array | None
 
     def part(self, which: slice | Array) -> Rows:
-        """Some of the rows."""
         return Rows(*(None if column is None else column[which] for column in self))  # type: ignore[arg-type]
 
 
 def joined(first: Rows, second: Rows) -> Rows:
-    """Two stretches one after the other."""
     return Rows(*(None if a is None else np.concatenate((a, b)) for a, b in zip(first, second, strict=True)))  # type: ignore[arg-type]
 
 
@@ -183,7 +180,6 @@ def _seconds(time: NDArray[Any], origin: Any, factor: float) -> Array:
 # comes just after.  Whoever sums such samples for the impulse of the force counts the change half a sample
 # early, which looks like a mass of c T/2 more: 1.5 g for 3 N·s/m at 1 kHz.  The mean of both sides has no
 # such mass, and is what a load cell gives, which does not follow a jump.
-
 
 ROUNDING = 1e-9
 """Of the largest force, below which a jump is none."""

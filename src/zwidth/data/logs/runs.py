@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     Indices = NDArray[np.intp]
 
-
 MOST_SCRAPS = 64
 """Runs of a sample or two, one after the other, that no lost samples explain."""
 
@@ -47,7 +46,6 @@ class Cutter:
         self._length = self._scraps = 0
 
     def segments(self, rows: Iterable[Rows]) -> Iterator[Segment]:
-        """The rows in order, cut."""
         waiting: Rows | None = None
         for new in rows:
             piece = new if waiting is None else joined(waiting, new)
@@ -148,7 +146,6 @@ def _same_as_before(rows: Rows, places: NDArray[np.intp]) -> NDArray[np.bool_]:
 # was late.  Levels are compared by the median of a few samples on each side; where stamps come in groups (a
 # coarse clock, packets), by their lowest, since a stamp in a packet is late and never early.
 
-
 _SIDE, _NOISY_SIDE = 7, 31
 """Samples on each side of a jump that say where r was and is; more where stamps vary by a tenth of T."""
 
@@ -163,10 +160,7 @@ GAP, REPEATED, BACK = 1, 2, 3
 
 @dataclass(frozen=True, kw_only=True)
 class Clock:
-    """What the first stamps say."""
-
     period: float
-    """[s] roughly T."""
     group: int
     """Most samples between two stamps that differ; 1 where every sample has its own."""
     noisy: bool = False
@@ -174,7 +168,6 @@ class Clock:
 
     @property
     def reach(self) -> int:
-        """How many samples on each side a decision needs."""
         if self.group > 1:
             return 8 * self.group
         return _NOISY_SIDE if self.noisy else _SIDE

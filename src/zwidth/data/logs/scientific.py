@@ -88,7 +88,6 @@ def _columns(name: str, data: h5py.Dataset) -> dict[str, _Column]:
 
 
 def _part(data: Any, column: _Column, start: int, end: int) -> Values:
-    """Rows of a column from its dataset."""
     if column.where is None:
         return np.asarray(data[start:end])
     if isinstance(column.where, str):
@@ -164,10 +163,8 @@ def matlab_table(path: Path) -> Table:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         variables = loadmat(path, squeeze_me=True, struct_as_record=False)
-    columns: dict[str, _Vector] = {}
-    for name, value in variables.items():
-        if not name.startswith("__"):
-            columns.update(_vectors(name, value))
+    own = [(name, value) for name, value in variables.items() if not name.startswith("__")]
+    columns = dict(vector for each in own for vector in _vectors(*each))
     if not columns and any(isinstance(v, MatlabOpaque) for v in variables.values()):
         raise InputError(
             f"{path} holds objects, such as a timeseries or a Dataset, that MATLAB alone reads; in it: "
@@ -175,19 +172,13 @@ def matlab_table(path: Path) -> Table:
             "save('log.mat', 't', 'position', '-v7')"
         )
     table = _held(path, columns)
-    table.notes.update(
-        (text, Finding(kind="file", text=text)) for text in (_first_line(each) for each in said)
-    )
+    for warning in said:  # without what scipy advises programmers to do
+        text = str(warning.message).splitlines()[0].split(" Consider ")[0]
+        table.notes[text] = Finding(kind="file", text=text)
     return table
 
 
-def _first_line(warning: warnings.WarningMessage) -> str:
-    """What scipy says of a file, without what it advises programmers to do."""
-    return str(warning.message).splitlines()[0].split(" Consider ")[0]
-
-
 def _held(path: Path, columns: Mapping[str, _Vector]) -> Table:
-    """The table of vectors that are in memory."""
     return Table(
         source=str(path),
         units={name: unit for name, (_, unit) in columns.items()},
@@ -206,7 +197,7 @@ def numpy_table(path: Path) -> Table:
                 name = member.filename.removesuffix(".npy")
                 columns.update(_vectors(name, _array(path, archive.read(member))))
     else:
-        columns = _vectors("data", _array(path, path.read_bytes()))
+        columns.update(_vectors("data", _array(path, path.read_bytes())))
     return _held(path, columns)
 
 
@@ -254,34 +245,34 @@ _Vector = tuple[Values, str | None]
 """Numbers, and their unit if it is stated."""
 
 
-def _vectors(name: str, value: Any) -> dict[str, _Vector]:
+def _vectors(name: str, value: Any) -> Iterator[tuple[str, _Vector]]:
     """The vectors in a variable: itself, columns of a matrix, what fields hold; of a list each one's."""
     if hasattr(value, "_fieldnames"):  # a structure of scipy's
-        parts = [_vectors(f"{name}.{field}", getattr(value, field)) for field in value._fieldnames]
-        found = {key: vector for part in parts for key, vector in part.items()}
+        found = dict(v for f in value._fieldnames for v in _vectors(f"{name}.{f}", getattr(value, f)))
         if hasattr(value, "signals") and f"{name}.time" in found:  # of Simulink, whose clock counts seconds
             found[f"{name}.time"] = (found[f"{name}.time"][0], "s")
-        return found | _labelled(name, value, found)
+        yield from (found | _labelled(name, value, found)).items()
+        return
     array = np.asarray(value)
     if array.dtype.names and array.size > 1:
-        parts = [_vectors(f"{name}.{field}", array[field]) for field in array.dtype.names]
-        return {key: vector for part in parts for key, vector in part.items()}
-    if array.dtype.kind == "O" and array.ndim == 1 and array.size <= MOST_COLUMNS:
-        parts = [_vectors(f"{name}[{k}]", each) for k, each in enumerate(array)]
-        return {key: vector for part in parts for key, vector in part.items()}
+        for field in array.dtype.names:
+            yield from _vectors(f"{name}.{field}", array[field])
+    elif array.dtype.kind == "O" and array.ndim == 1 and array.size <= MOST_COLUMNS:
+        for k, each in enumerate(array):
+            yield from _vectors(f"{name}[{k}]", each)
     if array.dtype.kind not in "fiuMm" or array.ndim not in (1, 2) or array.size < 2:
-        return {}
+        return
     unit = None
     if array.dtype.kind in "Mm":  # dates, durations
         unit, array = "ns", array.astype(f"{array.dtype.kind}8[ns]")
         array = array.astype(np.int64) if array.dtype.kind == "m" else array
     if array.ndim == 1:
-        return {name: (array, unit)}
+        yield name, (array, unit)
+        return
     if array.shape[1] > min(array.shape[0], MOST_COLUMNS):
         array = array.T
-    if array.shape[1] > MOST_COLUMNS:
-        return {}
-    return {f"{name}[{k}]": (array[:, k], unit) for k in range(array.shape[1])}
+    if array.shape[1] <= MOST_COLUMNS:
+        yield from ((f"{name}[{k}]", (array[:, k], unit)) for k in range(array.shape[1]))
 
 
 def _labelled(name: str, signal: Any, found: Mapping[str, _Vector]) -> dict[str, _Vector]:

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from zwidth.native.compiled import Array
 
-
 _DOUBLE, _SINGLE = 4 * 2.0**-52, 2.0**-23
 FEWEST = 8
 """Different positions that it takes to speak of a step."""
@@ -38,9 +37,7 @@ class Grid(NamedTuple):
 
 def grid_of(positions: Array, unit: float = 1.0) -> Grid | None:
     """The coarsest grid that the positions [m; rad] lie on; None if they lie on none, or too few differ.
-
-    Decimals are decimals in the `unit` [m; rad] of the numbers in the file.
-    """
+    Decimals are decimals in the `unit` [m; rad] of the numbers in the file."""
     levels = np.unique(positions)
     if levels.size < FEWEST:
         return None
@@ -135,7 +132,6 @@ def _is_decimal(value: float) -> bool:
 # if every large jump is nearly P, and the positions fill nearly all of P:  x = y + P w(k)  with w the jumps
 # so far.
 
-
 _BITS = range(8, 33)
 _LARGE_KEPT = 4096
 
@@ -202,7 +198,6 @@ class Unwrapper:
 # step comes six times as often as those beside it, of most motions more seldom.  At an end stop it comes
 # hundreds of times as often, or each of a few steps does where there is noise behind the stop.
 
-
 _KEPT, _BESIDE = 64, 16
 """Different readings that are counted at either end, and with how many further inside each is compared."""
 
@@ -240,9 +235,7 @@ class Stops:
 
     def found(self) -> tuple[tuple[float, float], int]:
         """The readings from which on the sensor is at its lower and its upper end, and how many samples are.
-
-        Infinite where it never is.  A force of exactly 0 is no stop: nobody touches the sensor then.
-        """
+        Infinite where it never is. A force of exactly 0 is no stop: nobody touches the sensor then."""
         ends, samples = {-1: -np.inf, 1: np.inf}, 0
         for sign, (values, counts) in self._ends.items():
             if not values.size:
@@ -262,8 +255,7 @@ class Stops:
 
 def beyond(force: Array, stops: tuple[float, float]) -> NDArray[np.bool_]:
     """Where a force is at one of its stops, or further out."""
-    found: NDArray[np.bool_] = (force <= stops[0]) | (force >= stops[1])
-    return found
+    return np.asarray((force <= stops[0]) | (force >= stops[1]))
 
 
 def at_ends(stops: tuple[float, float], unit: str) -> str:

@@ -44,7 +44,6 @@ CDR = b"\x00\x01\x00\x00"
 """Before each message: little-endian."""
 
 ROWS, EVENTS = "/zwidth/model/samples", "/zwidth/events"
-"""Topics."""
 
 HEAD, END = "zwidth recording", "zwidth end"
 """Names of the metadata at the beginning, and behind the last row."""
@@ -179,11 +178,9 @@ def _expanded(stored: bytes, codec: str, size: int) -> bytes | None:
 def _messages(
     data: bytes, topics: dict[int, str], width: int, following: int | None
 ) -> tuple[Part, int | None] | None:
-    """The rows and events in a chunk, and the number of the row that follows.
-
-    None if it holds what no recorder writes, or does not begin with the row that is to follow: then a chunk
-    before it was passed over, since it is no more known as one.
-    """
+    """The rows and events in a chunk, and the number of the row that follows. None if it holds what no
+    recorder writes, or does not begin with the row that is to follow: then a chunk before it was passed over,
+    since it is no more known as one."""
     rows: list[Any] = []
     events: list[dict[str, Any]] = []
     place = 0
@@ -233,7 +230,6 @@ def _run_of_rows(data: bytes, place: int, width: int) -> tuple[Any, int]:
 
 
 def _event(message: bytes) -> dict[str, Any]:
-    """The JSON in a message of one string."""
     (size,) = unpack_from("<I", message, len(CDR))
     return from_json(message[8 : 8 + size - 1])
 
@@ -241,7 +237,6 @@ def _event(message: bytes) -> dict[str, Any]:
 # A recording as the table of a log: when a sample was taken, the position as read, the force given.
 #
 # A row whose sample had no good answer has no position: nothing was read.
-
 
 GOOD = 0.0
 """The status of a sample that was read."""
@@ -332,7 +327,6 @@ class Mcap:
         return None
 
     def deserialize(self, data: bytes, msgtype: Any) -> Any:
-        """The message in these bytes."""
         decoder = self._decoders[msgtype]
         assert decoder is not None
         return decoder(data)

@@ -28,9 +28,7 @@ class Sheets(NamedTuple):
 
 def table_of_sheets(book: Sheets, sheet: str | None) -> Table:
     """The longest table, and in `Table.sheets` all of them where there are several; or that of one sheet.
-
-    Sheets that are hidden are read where they are named.
-    """
+    Sheets that are hidden are read where they are named."""
     names = [name for name, shown in book.shown.items() if shown] if sheet is None else [_named(book, sheet)]
     grids = {name: grid for name in names if (grid := grid_of(book.rows(name), _source(book, name)))}
     if not grids:
@@ -46,7 +44,6 @@ def table_of_sheets(book: Sheets, sheet: str | None) -> Table:
 
 
 def _named(book: Sheets, sheet: str) -> str:
-    """The sheet of a name, however its letters are written."""
     found = [name for name in book.shown if name == sheet] or [
         name for name in book.shown if name.strip().lower() == sheet.strip().lower()
     ]
@@ -101,7 +98,6 @@ def _refuse_formulas(book: Sheets, name: str, grid: Grid, columns: tuple[str, ..
 # A row with names, in which two cells or more hold text and none a number of a column, stands above each
 # table.  The longest table is taken; those below it under the same names go on with it, as when tests are put
 # under each other.  What else is a table of its own is left out, and said.
-
 
 FEWEST_ROWS = 3
 """Of a table; a setting or a mean is none."""

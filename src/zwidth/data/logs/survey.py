@@ -18,7 +18,6 @@ from zwidth.quantity.text import told
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
 
-
 _LEVELS = 64
 """Different positions after which the step is looked for."""
 
@@ -30,7 +29,6 @@ class Intervals(NamedTuple):
     """Sums over the intervals between stamps."""
 
     number: int = 0
-    """How many."""
     elapsed: float = 0.0
     """[s] of all together."""
     squares: float = 0.0
@@ -79,7 +77,6 @@ class Survey:
         self._before = np.nan
 
     def look(self, segments: Iterable[Segment]) -> None:
-        """Look at every segment, in their order."""
         for segment in segments:
             self.samples += segment.rows.time.size
             self.runs += segment.begins
@@ -190,7 +187,6 @@ class Still(InputError):
 
 
 def refuse_survey(survey: Survey, tally: Counter[str], source: str) -> None:
-    """Refuse a log that says nothing."""
     if survey.samples < 2:
         raise InputError(
             f"{source} holds {survey.samples} samples; a log needs two at least, and many to say something"
@@ -250,7 +246,6 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
 
 
 def clock_findings(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Finding]:
-    """Gaps, restarts, repetitions, jitter."""
     numbers = {**tally, "longest": cutter.longest_gap}
     for what, (kind, text, samples) in _COUNTED.items():
         if tally[what]:

@@ -18,7 +18,6 @@ from zwidth.quantity.answered import answered
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
 
-
 PIECE = 2**18
 """Rows that are read at once, where the format lets us choose."""
 
@@ -33,13 +32,11 @@ class Table:
     """Columns of a file."""
 
     source: str
-    """Name of the file, for messages."""
     units: Mapping[str, str | None]
     """Every column with the unit that the file states; None if it states none."""
     read: Callable[[tuple[str, ...]], Iterator[tuple[Values, ...]]]
     """Gives the columns named, piece by piece: the same number of rows in each."""
     attributes: Mapping[str, Any] = field(default_factory=dict)
-    """What the file says of itself."""
     notes: dict[str, Finding] = field(default_factory=dict)
     """What was odd in the file; complete after `read` came to its end."""
     means: Mapping[str, str | None] = field(default_factory=dict)
@@ -186,7 +183,6 @@ class Block(NamedTuple):
     actuator_force: Array | None
 
     def part(self, where: slice) -> Block:
-        """Some of its samples."""
         columns = (None if column is None else column[where] for column in self[1:])
         return Block(self.run, *columns)  # type: ignore[arg-type]
 

@@ -42,7 +42,6 @@ class Samples(NamedTuple):
 
     @property
     def size(self) -> int:
-        """How many."""
         return int(self.counts.size)
 
     def time(self, about: About) -> Array:
@@ -113,7 +112,6 @@ class Decoder:
         self.about = about
 
     def _samples(self, data: Bytes, at: Indices) -> Samples:
-        """Of the packets of samples that begin at these places."""
         body = at + HEAD
         status = number(data, body + 8, 1)
         starts, stamps = self._follow(
@@ -161,7 +159,6 @@ class Decoder:
 # The checksum is the CRC-16 of ITU-T V.41, polynomial 0x1021, begun with ones, of all bytes before it.
 # Within a packet nothing is looked for.  Layout: firmware/mains/shared/telemetry.h.
 
-
 Bytes = NDArray[np.uint8]
 Indices = NDArray[np.int64]
 
@@ -190,8 +187,6 @@ _OF_A_BYTE = _table()
 
 
 class Found(NamedTuple):
-    """Packets in a stretch of bytes."""
-
     starts: Indices
     sizes: Indices
     """In bytes, all of a packet."""
@@ -272,7 +267,6 @@ def _apart(starts: Indices, sizes: Indices) -> tuple[Indices, Indices]:
 # One byte of flags stands before it: 1, positions are in rad; 2, forces are sent as whole units of the law.
 # Otherwise one unit of a force that is sent is ``force_most / 32767``.
 
-
 FORMAT = "zwidth telemetry 1"
 
 _ROTARY, _EXACT = 1, 2
@@ -281,10 +275,7 @@ _NUMBERS = ("period_s", "resolution", "force_per_unit", "force_most")
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """What telemetry says of its law."""
-
     motion: Literal["linear", "rotary"]
-    """"linear" or "rotary"."""
     period: float
     """T [s]."""
     resolution: float
@@ -298,7 +289,6 @@ class About:
 
 
 def about_in(content: bytes) -> About:
-    """What a packet of text says."""
     flags, text = content[0], content[1:].decode("ascii", "replace")
     first, *lines = text.splitlines() or [""]
     if first != FORMAT:
@@ -327,7 +317,6 @@ def about_in(content: bytes) -> About:
 
 
 PIECE = 2**17
-"""Bytes that are read at once."""
 
 
 def is_telemetry(start: bytes) -> bool:
@@ -383,7 +372,6 @@ def samples_of(path: Path, decoder: Decoder) -> Iterator[Samples]:
 
 
 def findings(decoder: Decoder) -> Iterator[Finding]:
-    """What was missing."""
     if decoder.lost:
         text = (
             f"{decoder.lost} packets are missing, and {decoder.damaged} stretches of the file are no packet"

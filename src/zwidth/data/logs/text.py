@@ -39,19 +39,17 @@ _MOST_BROKEN = 0.01
 
 
 def text_table(path: Path) -> Table:
-    """The table in a text file."""
     with opened_text(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
     _refuse_long_table(layout, path)
-    attributes = _attributes(layout)
     table = Table(
         source=str(path),
         units={name: unit_in(layout, name) for name in layout.names},
         read=lambda names: _read(path, layout, names, table.notes),
-        attributes=attributes,
+        attributes=_attributes(layout),
     )
     return table
 
@@ -108,7 +106,7 @@ def _read(
         rest, above = b"", layout.skipped
         while piece := file.read(_PIECE):
             if above:
-                piece, above = _without_lines(piece, above), 0
+                piece, above = piece.split(b"\n", above)[-1], 0
             end = piece.rfind(b"\n") + 1
             if end == 0 and len(rest) + len(piece) > 2 * _PIECE:
                 if not piece.strip(b"\0"):
@@ -127,13 +125,6 @@ def _read(
     if b"\0" in rest or (not rest.strip(b"\0") and rest):
         notes["zeros"] = Finding(kind="zeros", text="the file ends in zero bytes: its end was never written")
     parser.report(notes)
-
-
-def _without_lines(piece: bytes, count: int) -> bytes:
-    start = 0
-    for _ in range(count):
-        start = piece.index(b"\n", start) + 1
-    return piece[start:]
 
 
 class Parser:
@@ -155,7 +146,6 @@ class Parser:
         self.notes, self.first_note = 0, ""
 
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
-        """The columns of these lines."""
         if not lines:
             return
         cleaned = self._cleaned(lines)
@@ -193,7 +183,6 @@ class Parser:
         return [piece.columns]
 
     def report(self, notes: dict[str, Finding]) -> None:
-        """Write down what was left out."""
         if self.unfinished:
             text = "the last line has no end, it may be cut off; it is left out"
             notes["unfinished"] = Finding(kind="unfinished", text=text, samples=1)
@@ -270,7 +259,6 @@ def _numbers(column: pa.Array) -> Values:
 # Thousands in groups, columns with different decimal signs, times of day, dates as people write them, words
 # for a missing number, lines of text below the table.  A line of text between numbers is refused: nobody
 # knows what it was.
-
 
 MOST_NOTES = 50
 """Lines of text below a table; more are no notes."""

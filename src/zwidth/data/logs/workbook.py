@@ -33,7 +33,6 @@ _DAY_0 = datetime(1899, 12, 31)
 
 
 def workbook_table(path: Path, sheet: str | None) -> Table:
-    """The tables in a workbook, or that of one sheet."""
     check_workbook(path)
     with _opened(path, results=True) as book:
         shown = {each.title: each.sheet_state == "visible" for each in book.worksheets}
@@ -76,7 +75,6 @@ def _opened(path: Path, results: bool) -> Iterator[Any]:
 
 
 def _rows(path: Path, name: str) -> list[list[str]]:
-    """The cells of a sheet as text."""
     found: list[list[str]] = []
     numbers: set[int] = set()
     cells = 0
@@ -145,7 +143,6 @@ def _written(value: object) -> str:
 
 
 def _clock(since: timedelta) -> str:
-    """Hours, minutes and seconds."""
     seconds = since.total_seconds()
     if seconds < 0:
         return ""
@@ -156,7 +153,6 @@ def _clock(since: timedelta) -> str:
 #
 # The library holds styles and texts in memory as objects, many times as large as they are in the file, and a
 # row at a time; so each of these is bounded by itself.
-
 
 SMALL = 2**20
 """[bytes] Most of what describes a workbook: styles, names, relations."""

@@ -39,7 +39,6 @@ _MEMORY = 10
 _SHADE = 1.0 - 1e-12
 """Of the damping, so that rounding does not ask for more than there is."""
 
-
 _LEAST = 1e-40
 """As everywhere: no haptic quantity is smaller.  A branch with less is none."""
 

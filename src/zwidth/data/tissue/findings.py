@@ -20,7 +20,6 @@ from zwidth.quantity.text import quantity_unit
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-
 SOFTEST, STIFFEST = 5.0, 5e4
 """Between them lies what a probe feels of soft tissue, phantoms included [N/m]."""
 
@@ -81,11 +80,8 @@ def findings(
     left_out: int,
     motion: str,
 ) -> Iterator[Finding]:
-    """What was found, and what was done about it.
-
-    `zero` is that at the start, then further on [N; N·m]; the force is `late` [s]; `left_out` samples at the
-    ends of the sensor's range do not count.
-    """
+    """What was found, and what was done about it. `zero` is that at the start, then further on [N; N·m]; the
+    force is `late` [s]; `left_out` samples at the ends of the sensor's range do not count."""
     unit = quantity_unit(record.response, motion)
     ends = at_ends(stops, unit)
     if ends:
@@ -143,7 +139,6 @@ def _lateness(kind: str, late: float) -> Finding:
 #
 # if nothing is there (the score test of Rao, 1948, with the covariance below).
 
-
 DRIFT = 10.0
 """Time over which the zero of a force may drift along a straight line [s]."""
 
@@ -153,13 +148,11 @@ HOLE = 2.5
 MOST_HOLES = 50
 """Beyond, what is left between them says little."""
 
-
 HELD = 0.02
 """Part of the position's range within which a probe is held, and the force may stay as it is."""
 
 THRESHOLD = 1.0 - SURE
 """Chance below which a fault is believed to be there."""
-
 
 FINER = 4
 """Instants in each interval at which a filter is reckoned."""
@@ -183,7 +176,7 @@ class Faults(NamedTuple):
         return (
             np.stack([*columns, *(_wandering(time) if self.drift else [])], axis=1)
             if columns
-            else _none(time)
+            else np.empty((time.size, 0))
         )
 
     def delayed(self, predicted: Array, time: Array, late: float) -> Array:
@@ -198,10 +191,6 @@ class Faults(NamedTuple):
         fine = np.interp(np.arange(FINER * (time.size - 1) + 1) / FINER, np.arange(time.size), time)
         values = smooth(fine)
         return np.asarray((values - decaying(np.diff(fine), np.diff(values), 1.0 / late))[::FINER])
-
-
-def _none(time: Array) -> Array:
-    return np.empty((time.size, 0))
 
 
 def _wandering(time: Array) -> list[Array]:
@@ -249,10 +238,8 @@ def unlikely(jacobian: Array, left: Array, columns: Array, noise: Noise) -> floa
 
 
 def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | None:
-    """The sample at which a branch most likely changed unseen; None where it has no memory.
-
-    By correlating what is left with exp(−t/τ) from each sample on.
-    """
+    """The sample at which a branch most likely changed unseen; None where it has no memory. By correlating
+    what is left with exp(−t/τ) from each sample on."""
     if not model.linear or record.response == "position" or not model.elements(p).branches:
         return None
     mu, eta = max(model.elements(p).branches, key=lambda pair: pair[1])
@@ -278,7 +265,6 @@ def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | N
 # − k degrees of freedom. Assumed: the model is right, the noise of zero mean, stationary and as likely in
 # every sample, small enough for the linear J, and the input free of it.
 
-
 LARGEST_ORDER = 12
 """Of the noise; a memory longer than so many samples is cut."""
 
@@ -295,7 +281,6 @@ class Noise(NamedTuple):
 
     @property
     def order(self) -> int:
-        """p; 0 for white noise."""
         return self.coefficients.size - 1
 
 
@@ -367,9 +352,7 @@ def passed_over(
     position: Array, force: Array, time: ArrayLike | None, period: float, stiffness: float
 ) -> tuple[NDArray[np.bool_], tuple[Finding, ...]]:
     """Which samples of a record are passed over, and why: at an end of the sensor's range, and after a hole.
-
-    `stiffness` is that at once, of the solid that the tracker starts from [N/m; N·m/rad].
-    """
+    `stiffness` is that at once, of the solid that the tracker starts from [N/m; N·m/rad]."""
     _check_sign(position, force)
     passed, findings = np.zeros(force.size, dtype=bool), [*_units(position, force, stiffness)]
     stopped = _stopped(position, force)
@@ -397,7 +380,6 @@ def _stopped(position: Array, force: Array) -> NDArray[np.bool_]:
 
 
 def _units(position: Array, force: Array, stiffness: float) -> Iterator[Finding]:
-    """Said where the force goes about by far more or less than the start would make of the motion."""
     inside = position > 0
     moved = float(np.ptp(position[inside])) if inside.any() else 0.0
     if position.size >= FEWEST and not inside.any():

@@ -43,7 +43,6 @@ class Solid(NamedTuple):
 
 
 def as_rule(rule: object) -> Rule:
-    """Check the name of a rule."""
     if rule not in RULES:
         raise InputError(f'rule is "ramp", "bilinear" or "backward", got {rule!r}')
     return rule  # type: ignore[return-value]

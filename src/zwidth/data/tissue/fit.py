@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
 
-
 STANDARD_MODELS = ("kelvin-voigt", "maxwell", "standard-linear-solid", "generalized-maxwell")
 
 

@@ -59,7 +59,6 @@ class Record(NamedTuple):
 
     @property
     def output(self) -> Array:
-        """What is predicted, and taken as noisy."""
         return self.force if self.response == "force" else self.position
 
 
@@ -72,12 +71,10 @@ class Model:
 
     @property
     def linear(self) -> bool:
-        """False for Hunt–Crossley."""
         return self.name != "hunt-crossley"
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The names of its parameters."""
         own = OWN_PARAMETERS[self.name]
         if self.name != "generalized-maxwell":
             return own
@@ -140,7 +137,6 @@ class Model:
 
 
 def as_model(name: object, branches: int | None, response: Response) -> Model:
-    """Check the name of a model and its branches."""
     if name not in OWN_PARAMETERS:
         choices = ", ".join(f'"{choice}"' for choice in OWN_PARAMETERS)
         raise InputError(f"model is one of {choices}; got {name!r}")
@@ -163,7 +159,6 @@ def as_model(name: object, branches: int | None, response: Response) -> Model:
 
 
 def unit_of(parameter: str, motion: str, exponent: float = 1.0) -> str:
-    """The SI unit of a parameter, as the glossary writes it; a stiffness is per length to the exponent."""
     name = parameter.rstrip("_0123456789")
     power = "" if exponent == 1 else f"^{exponent:.3g}"
     return GLOSSARY[name].unit_for(motion) + power
@@ -173,7 +168,6 @@ def unit_of(parameter: str, motion: str, exponent: float = 1.0) -> str:
 #
 # With the rates 1/τᵢ given, the force is linear in K, B and the μᵢ, all ≥ 0.  So a grid of rates is tried,
 # one branch after the other, each the one that leaves the least; that needs no guess from a person.
-
 
 RATES = 25
 """In the grid, from a third of one per record to the fastest that samples show."""

@@ -31,7 +31,6 @@ from zwidth.quantity.exact import Exact, RealLike
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-
 Method = Literal["least-squares", "instrumental", "output-error"]
 
 _SLOWEST = 1e5
@@ -265,7 +264,6 @@ class Tracker:
 
 
 def positive(name: str, value: RealLike) -> Exact:
-    """A number > 0; `name` is said where it is not."""
     try:
         number = Exact(value)
     except InputError as error:

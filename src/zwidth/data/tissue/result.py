@@ -301,9 +301,8 @@ class TissueFit(Documented):
     def _summary(self) -> str:
         noise = "white noise" if not self.noise_order else f"noise of order {self.noise_order}"
         return (
-            f"{self.model.name}, {self.residuals.size} samples: r² = {self.r_squared:.6f}, "
-            f"residuals {self.rms:.3g} {unit_text(self._unit('offset'))} RMS, {noise}, "
-            f"condition {self.condition:.3g}"
+            f"{self.model.name}, {self.residuals.size} samples: r² = {self.r_squared:.6f}, residuals "
+            f"{self.rms:.3g} {unit_text(self._unit('offset'))} RMS, {noise}, condition {self.condition:.3g}"
         )
 
     def report(self) -> Iterable[Part]:

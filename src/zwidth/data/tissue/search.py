@@ -52,7 +52,6 @@ NOWHERE = (-np.inf, np.inf)
 EXACT = 1e-7
 """Residuals below this part of the largest output are rounding."""
 
-
 Mask = np.ndarray[Any, np.dtype[np.bool_]]
 
 
@@ -68,12 +67,10 @@ class Task(NamedTuple):
 
     @property
     def own(self) -> int:
-        """Parameters of the model."""
         return len(self.model.parameters)
 
     @property
     def size(self) -> float:
-        """Of the output."""
         return float(np.abs(self.record.output).max()) or 1.0
 
 

@@ -113,7 +113,6 @@ def _unit(name: str, seen: PairEvidence) -> str:
 # compensation, as far as the devices are known; p is the mean over what an owner may be wrong by.  Where
 # nothing is left over, something that is not in the file feeds the motion, and nothing is named.
 
-
 PAIR_CAUSES: Mapping[str, str] = {
     "link delay": "each arm is pulled to where the other one was when its reading was sent",
     "sampling": "the spring is held from sample to sample and so pushes out harder than it was pressed in",

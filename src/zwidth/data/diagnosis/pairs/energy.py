@@ -47,7 +47,6 @@ TERMS = (
     "friction compensation",
     "actuator limit",
 )
-"""The terms of the energy that goes in."""
 
 _MOST_ROWS = 20_000
 """Up to the end of the vibration, for the law."""
@@ -71,8 +70,6 @@ _MOST_LAGS = 16
 
 @dataclass(frozen=True, kw_only=True)
 class PairEvidence:
-    """Everything that was measured in a vibration of two arms."""
-
     vibration: Vibration
     """Of the arm that swings further."""
     leading: int
@@ -99,7 +96,6 @@ class PairEvidence:
     rubs: tuple[float, float] | None
     """[J] that viscous and Coulomb friction take in a cycle in both arms; None without their devices."""
     rotary: bool
-    """Of joints."""
 
     @property
     def lost(self) -> float | None:
@@ -119,7 +115,6 @@ def vibrates(recording: PairRecording) -> tuple[Vibration, int] | None:
 def gather(
     recording: PairRecording, vibration: Vibration, leading: int, devices: tuple[Device, Device] | None
 ) -> PairEvidence:
-    """Measure everything."""
     known = [Known.of(device) for device in devices] if devices is not None else [Known(), Known()]
     rows, period = vibration.rows, recording.leader.period
     loop_period = max((k.period for k in known if k.period), default=period)
@@ -259,7 +254,6 @@ def _work(force: Phasors, x: Phasors, orders: Array) -> float:
 #
 # x is the arm's own position, x' the other's, v the difference of the last two readings.  Every pair of lags
 # of a list is tried, the terms are fitted by least squares, and the law is the one of least BIC.
-
 
 _MOST_FITTED = 2000
 _FEWEST_ROWS = 30

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.diagnosis.recording import COMMANDED, Recording, read_of_table, without_effort
+from zwidth.data.diagnosis.recording import COMMANDED, Recording, Told, read_of_table, without_effort
 from zwidth.data.logs.columns import recognise, role_of_force
 from zwidth.data.logs.read import opened
 from zwidth.data.logs.table import Table, Values, in_pieces, listed
@@ -41,16 +41,13 @@ class PairRecording:
 
     leader: Recording
     follower: Recording
-    """Each as a recording of its own."""
 
     @property
     def source(self) -> str:
-        """Name of the file."""
         return self.leader.source
 
     @property
     def arms(self) -> tuple[Recording, Recording]:
-        """Leader and follower."""
         return self.leader, self.follower
 
 
@@ -76,39 +73,35 @@ def read_pair(
 ) -> PairRecording:
     """Both arms; keys may carry `leader_` or `follower_`, a key without is of both."""
     sheet = reading.pop("sheet", None)
-    told = (columns or {}, units or {}, scale or {}, reading)
+    told = Told(columns or {}, units or {}, scale or {}, reading)
     if not isinstance(recording, str | PathLike):
-        return _both(_of_dataset(recording), *told)
+        return _both(_of_dataset(recording), told)
     with opened(recording, sheet, columns) as table:
-        return _both(table, *told)
+        return _both(table, told)
 
 
-def _both(table: Table, columns: Mapping[str, str | None], *told: Any) -> PairRecording:
+def _both(table: Table, told: Told) -> PairRecording:
     """Both arms by one clock: that of the leader's position, where each has its own."""
+    columns = told.columns
     if not _of_both(list(table.units), columns):
         raise InputError(
             f"{table.source}: there are no columns of a leader and of a follower; say which with "
             'columns={"leader_position": …} and so on, or name them so'
         )
     sides = [_of_arm(table, arm, columns) for arm in ARMS]
-    if not any(map(_has_force, sides)):
+    roles = (COMMANDED, "actuator_force")
+    if not any(any(map(chosen.get, roles)) or any(map(role_of_force, own)) for own, chosen in sides):
         raise InputError(
             f"{table.source}: no column is known to be a force of either arm, and without it nobody can say "
             'where the energy of a vibration comes from; say which with columns={"leader_actuator_force": …} '
             'and columns={"follower_actuator_force": …}, or with commanded_force for what a law asks for; '
-            "there are "
-            f"{listed(table.units)}{without_effort(table.units)}"
+            f"there are {listed(table.units)}{without_effort(table.units)}"
         )
     original, chosen = sides[0]
     named = {**chosen, "hand_force": None, "actuator_force": None}
     named.pop("commanded_force", None)
     clock = original[recognise(dict.fromkeys(original), named, table.source)["position"]]
-    return _paired(*(_arm(table, arm, clock, columns, *told) for arm in ARMS))
-
-
-def _has_force(side: tuple[dict[str, str], dict[str, str | None]]) -> bool:
-    columns, chosen = side
-    return any(chosen.get(role) for role in (COMMANDED, "actuator_force")) or any(map(role_of_force, columns))
+    return _paired(*(_arm(table, arm, clock, told) for arm in ARMS))
 
 
 def _of_both(names: list[str], columns: Mapping[str, str | None] | None) -> bool:
@@ -127,23 +120,14 @@ def _of_arm(
             original[_OF[arm].sub("", name, count=1)] = name
         elif not _OF[other].search(name):
             original.setdefault(name, name)
-    chosen: dict[str, str | None] = _own(columns, arm, other)
+    chosen: dict[str, str | None] = _own(columns, arm)
     original |= {name: name for name in chosen.values() if name is not None and name in table.units}
     return original, chosen
 
 
-def _arm(
-    table: Table,
-    arm: str,
-    clock: str,
-    columns: Mapping[str, str | None],
-    units: Mapping[str, str],
-    scale: Mapping[str, object],
-    reading: Mapping[str, Any],
-) -> Recording:
+def _arm(table: Table, arm: str, clock: str, told: Told) -> Recording:
     """What the file holds of one arm."""
-    other = ARMS[1 - ARMS.index(arm)]
-    original, chosen = _of_arm(table, arm, columns)
+    original, chosen = _of_arm(table, arm, told.columns)
 
     def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
         wanted = list(dict.fromkeys((clock, *(original[name] for name in names))))
@@ -155,7 +139,8 @@ def _arm(
         table, units={name: table.units[was] for name, was in original.items()}, read=read, means={}
     )
     try:
-        return read_of_table(view, chosen, _own(units, arm, other), _own(scale, arm, other), reading)
+        own = Told(chosen, _own(told.units, arm), _own(told.scale, arm), told.reading)
+        return read_of_table(view, own)
     except InputError as error:
         text = _NO_COLUMN.sub(f"{arm}_", str(error))
         raise InputError(f"the {arm}: {text}") from None
@@ -165,9 +150,9 @@ _NO_COLUMN = re.compile(r'(?<=columns=\{")(?=\w+": […"])')
 """Where a message asks for a column of the arm."""
 
 
-def _own(given: Mapping[str, Any], arm: str, other: str) -> dict[str, Any]:
+def _own(given: Mapping[str, Any], arm: str) -> dict[str, Any]:
     """What was said of this arm, and of both."""
-    both = {key: v for key, v in given.items() if not key.startswith((f"{arm}_", f"{other}_"))}
+    both = {key: v for key, v in given.items() if not key.startswith(tuple(f"{each}_" for each in ARMS))}
     return both | {key.removeprefix(f"{arm}_"): v for key, v in given.items() if key.startswith(f"{arm}_")}
 
 

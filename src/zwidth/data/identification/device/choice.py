@@ -54,8 +54,6 @@ Zero = Literal["drifts", "constant", "exact"]
 
 
 class Choice(NamedTuple):
-    """What was decided."""
-
     piece: int
     """h, samples of a piece of a pulse."""
     late: float

@@ -64,7 +64,6 @@ class Side(NamedTuple):
 
 
 def sides(points: AnyTrace) -> tuple[Side, Side]:
-    """The pulses into the wall, and those out of it."""
     velocity = points["speed"].values
     order = np.argsort(np.abs(velocity), kind="stable")
     friction = (points["friction"].values * np.sign(velocity))[order]
@@ -75,9 +74,7 @@ def sides(points: AnyTrace) -> tuple[Side, Side]:
 
 def fastest(points: AnyTrace) -> tuple[float, float]:
     """The speed that 32 strokes, or a quarter of them, went beyond, into the wall and out of it [m/s; rad/s].
-
-    0 where there are none.
-    """
+    0 where there are none."""
     into, out = (_fastest(side) for side in sides(points))
     return into, out
 
@@ -93,11 +90,9 @@ def _fastest(side: Side) -> float:
 
 
 def friction_bins(points: AnyTrace, bins: int) -> xr.Dataset:
-    """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction.
-
-    So many bins each way, fewer where one would have less than eight strokes; along `direction`, "inward" and
-    "outward", and `bin`: speed, friction, its standard error, and the strokes in it.
-    """
+    """Mean speed and mean friction by direction and speed, each bin with as many pulses of its direction. So
+    many bins each way, fewer where one would have less than eight strokes; along `direction`, "inward" and
+    "outward", and `bin`: speed, friction, its standard error, and the strokes in it."""
     import xarray as xr
 
     table = np.array([[mean[:4] for mean in way] for way in _binned(sides(points), bins)], dtype=np.float64)
@@ -163,8 +158,7 @@ def _bend_up(means: list[_Mean]) -> Array:
     nearby = np.pad(half_bend, 1, mode="edge")
     wide = np.maximum(np.append(gap, 0.0), np.append(0.0, gap))
     variance = np.array([mean.variance for mean in means])
-    taken: Array = np.maximum(nearby, 0.0) * (variance + wide**2 / 4)
-    return taken
+    return np.asarray(np.maximum(nearby, 0.0) * (variance + wide**2 / 4))
 
 
 def curve_below(points: AnyTrace, confidence: float, bins: int, steepest: float) -> FrictionCurve:

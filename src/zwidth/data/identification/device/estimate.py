@@ -78,7 +78,6 @@ class Estimate(NamedTuple):
 
 
 def unit_of(parameter: str, motion: str) -> str:
-    """The unit of a parameter."""
     return _UNITS[parameter][motion == "rotary"]
 
 
@@ -97,11 +96,9 @@ def perhaps_none(estimates: Mapping[str, Estimate], names: Iterable[str]) -> Ite
 
 
 class Directions(NamedTuple):
-    """Damping in each direction.
-
-    A wall takes back no more than friction takes out in the direction in which there is less of it: a hand
-    may be quick that way and slow the other.  Of Coulomb friction only the mean of both directions counts,
-    what it differs by does no work to and fro."""
+    """Damping in each direction. A wall takes back no more than friction takes out in the direction in which
+    there is less of it: a hand may be quick that way and slow the other. Of Coulomb friction only the mean of
+    both directions counts, what it differs by does no work to and fro."""
 
     inward: Estimate
     outward: Estimate
@@ -126,7 +123,6 @@ class Directions(NamedTuple):
 # V takes the scatter of the strokes for what it is, whatever its cause: noise that is not white,
 # friction that is not quite f_c + b |v| (the "sandwich", clustered by stroke; Liang & Zeger 1986).
 
-
 FEWEST = 6
 """Strokes more than parameters, below which no uncertainty is stated."""
 
@@ -149,11 +145,9 @@ class Regression:
     """r², part of the force's variance that is explained."""
 
     def value(self, name: str) -> float:
-        """One parameter."""
         return float(self.values[self.names.index(name)])
 
     def error(self, name: str) -> float:
-        """Its standard error."""
         k = self.names.index(name)
         return float(np.sqrt(self.covariance[k, k]))
 
@@ -169,11 +163,9 @@ class Regression:
 def regress(
     moments: Moments, names: tuple[str, ...], mass: float | None = None, share: float = 1.0
 ) -> Regression | None:
-    """Fit the named parameters; None where the strokes are too few or too much alike.
-
-    A mass that is given [kg; kg·m²] is not fitted: m a then counts to the force.  `share` is the part of the
-    variance of df/dt that is motion and not noise, for `force_lag`.
-    """
+    """Fit the named parameters; None where the strokes are too few or too much alike. A mass that is given
+    [kg; kg·m²] is not fitted: m a then counts to the force. `share` is the part of the variance of df/dt that
+    is motion and not noise, for `force_lag`."""
     degrees = moments.strokes - len(names) - moments.lines
     if degrees < FEWEST:
         return None

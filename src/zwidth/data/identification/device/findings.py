@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from itertools import combinations
+from itertools import chain, combinations
 from typing import NamedTuple
 
 from zwidth.data.identification.device.choice import SURE
@@ -20,7 +20,6 @@ _SEEN = {
     "spring": "a spring, or gravity on an arc,",
     "force_lag": "a force recorded late, or early where this is negative,",
 }
-
 
 _KINDS = {"slow": "Stribeck friction"}
 
@@ -99,7 +98,6 @@ def _model(
 # Turn the sign of every force round, and m, b, f_c and k change theirs: a sensor that counts the other way
 # gives all of them below 0.  Where a hand's force and an actuator's are both logged, each sign is tried.
 
-
 Estimates = Mapping[str, Estimate]
 
 
@@ -135,7 +133,8 @@ def refuse_impossible(
         return
     said = " and ".join(f"{name} comes out as {estimates[name]}" for name in below)
     said = f"{log.source}: {said}, and no {bounds.whose} has that"
-    for channels in _subsets(log.channels):
+    sizes = range(1, len(log.channels) + 1)
+    for channels in chain(*(combinations(log.channels, size) for size in sizes)):  # the fewest signs first
         found = again(_turned(log, channels))
         if found is not None and all(found[name].interval()[0] > 0 for name in sure):
             raise InputError(f"{said}; {_flipped(log, channels, found, below)}")
@@ -154,12 +153,6 @@ def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[
         f"the sign of the {words} looks turned round: with the other one {right} come out; read the log "
         f"with {typed}{other}, or with a factor of the other sign where one was given"
     )
-
-
-def _subsets(channels: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """The fewest signs first."""
-    for size in range(1, len(channels) + 1):
-        yield from combinations(channels, size)
 
 
 def _turned(log: Log, channels: tuple[str, ...]) -> Log:

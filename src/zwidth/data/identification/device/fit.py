@@ -20,20 +20,15 @@ from zwidth.quantity.glossary import GLOSSARY
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 HINT = 0.8
 """Confidence above which a bend that differs by direction is fitted, not only believed: it costs width."""
 
 
 class Found(NamedTuple):
-    """The sums."""
-
     shape: Pulse
-    """The pulse."""
     late: float
     """By which the forces were recorded late [s]."""
     shares: tuple[float, float]
-    """See `Choice`."""
     moments: Moments
     longer: Moments
     """Of the pulses, and of those twice as long."""
@@ -42,7 +37,6 @@ class Found(NamedTuple):
     mass: float | None
     """Where it is given, and not fitted [kg; kg·m²]."""
     motion: str
-    """"linear" or "rotary"."""
 
     def regression(self, names: tuple[str, ...]) -> Regression | None:
         """The named parameters by the pulses."""
@@ -159,7 +153,6 @@ class Points:
         self._seen, self._stride = 0, 1
 
     def add(self, rows: Array, zero: str) -> None:
-        """Look at the pulses of the next piece."""
         if self._seen % self._stride == 0 and len(rows):
             self._kept.append((rows, line(rows, zero)))
             if sum(len(kept) for kept, _ in self._kept) > MOST:

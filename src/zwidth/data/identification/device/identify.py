@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-
 Model = Literal["Coulomb and viscous", "viscous"]
 
 

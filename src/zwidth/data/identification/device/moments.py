@@ -48,7 +48,6 @@ damping that is b + a into the wall and b − a out of it, e v² likewise of c; 
 friction that is larger at speeds below v_s (Stribeck)."""
 
 COLUMNS = len(REGRESSORS) + 1
-"""The regressors, and the force."""
 
 _UPPER = np.triu_indices(COLUMNS)
 
@@ -60,8 +59,6 @@ PAIRS.T[_UPPER] = PAIRS[_UPPER]
 
 @dataclass
 class Moments:
-    """The sums."""
-
     knee: float
     """v_s [m/s; rad/s]."""
     sum: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
@@ -70,13 +67,11 @@ class Moments:
     """Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns."""
     strokes: int = 0
     pulses: int = 0
-    """How many there were."""
     lines: int = 0
     """Numbers that were fitted to take the lines out."""
     means: Array = field(default_factory=lambda: np.zeros(COLUMNS))
     """Sum over the pieces of the means of the columns."""
     pieces: int = 0
-    """How many pieces."""
 
     def add(self, rows: Array, zero: str) -> None:
         """Count in the pulses of one piece, its zero taken out."""
@@ -146,17 +141,13 @@ SECONDS = 10.0
 
 
 class Piece(NamedTuple):
-    """A stretch of a run."""
-
     position: Array
     """Inside the strokes, between ticks by a cubic [m; rad]."""
     strokes: Strokes
     """Where the device surely moves."""
     block: Block
-    """What was recorded."""
 
     def pulses(self, shape: Pulse, period: float) -> Array:
-        """A row for each pulse, see `pulses`."""
         return weighed(
             shape, self.position, self.strokes, period, self.block.hand_force, self.block.actuator_force
         )
@@ -185,10 +176,8 @@ def _piece(block: Block, resolution: float, count: float, stops: tuple[float, fl
 
 
 def _within_range(strokes: Strokes, block: Block, stops: tuple[float, float]) -> Strokes:
-    """The strokes in which the sensor of the hand's force is never at the end of its range.
-
-    A stroke goes as a whole: which of its pulses stay must not depend on the force that they show.
-    """
+    """The strokes in which the sensor of the hand's force is never at the end of its range. A stroke goes as
+    a whole: which of its pulses stay must not depend on the force that they show."""
     if block.hand_force is None or not np.isfinite(stops).any():
         return strokes
     so_far = np.cumsum(beyond(block.hand_force, stops))

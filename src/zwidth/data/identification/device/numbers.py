@@ -74,7 +74,6 @@ class IdentifiedNumbers:
 
     @cached_property
     def points(self) -> xr.Dataset:
-        """What was seen, as an xarray.Dataset."""
         return self.seen.dataset()
 
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:

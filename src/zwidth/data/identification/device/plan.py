@@ -236,7 +236,6 @@ def plan_identification(
 
 
 def _middle(device: Device) -> Device:
-    """The device with the middle of each interval."""
     intervals = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
     return device.replace(**{k: float(v.low + v.high) / 2 for k, v in intervals.items()})
 
@@ -268,7 +267,6 @@ def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
 # method included: `INEFFICIENCY`.  The shares are those with the least cᵀVc, c for the parameter that limits
 # the wall (c-optimal; Elfving 1952).  One speed alone does: along a stroke it varies; a slow and a fast one
 # do better.
-
 
 PARAMETERS = ("mass", "damping", "coulomb_friction")
 
@@ -312,8 +310,7 @@ class Stroke(NamedTuple):
         matrix = np.stack(columns, axis=1)
         lines = np.linalg.qr(np.stack([np.ones(SAMPLES), time], axis=1))[0]
         matrix -= lines @ (lines.T @ matrix)
-        mean: Array = matrix.T @ matrix / SAMPLES
-        return mean
+        return np.asarray(matrix.T @ matrix / SAMPLES)
 
 
 def covariance(
@@ -326,10 +323,8 @@ def covariance(
 
 
 def best_shares(strokes: tuple[Stroke, ...], parameter: str) -> tuple[float, ...]:
-    """Shares of the time that make a parameter's variance smallest.
-
-    By w_i ← w_i √(vᵀ M_i v / vᵀ M v), v = M⁻¹ c, which never makes it larger (Fellman 1974).
-    """
+    """Shares of the time that make a parameter's variance smallest. By w_i ← w_i √(vᵀ M_i v / vᵀ M v), v =
+    M⁻¹ c, which never makes it larger (Fellman 1974)."""
     informations = np.stack([s.information() for s in strokes])
     c = np.eye(len(PARAMETERS))[PARAMETERS.index(parameter)]
     shares = np.full(len(strokes), 1 / len(strokes))

@@ -144,5 +144,4 @@ def _smoothed(values: Array, passes: int) -> Array:
 
 
 def _slope(values: Array, period: float) -> Array:
-    slope: Array = (values[2:] - values[:-2]) / (2 * period)
-    return slope
+    return np.asarray((values[2:] - values[:-2]) / (2 * period))

@@ -23,7 +23,6 @@ from zwidth.native.compiled import Array, compiled
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 PIECES = 4
 """Of a cubic B-spline."""
 
@@ -67,10 +66,8 @@ class Pulse(NamedTuple):
 
 def pulse(piece: int, delay: float = 0.0, late: float = 0.0) -> Pulse:
     """The pulse of pieces of h samples, h ≥ 2 and even, so that even and odd samples see the same pulse.
-
     `delay` ≥ 0 is from a sample to its actuator force, `late` of either sign how much later than positions
-    forces were recorded [samples].
-    """
+    forces were recorded [samples]."""
     reach = _reach(piece)
     at = np.arange(-reach, reach + 1) / piece
     pad = int(np.ceil(delay + abs(late))) + 1
@@ -88,11 +85,9 @@ def _reach(piece: int) -> int:
 
 
 def _corrections(piece: int) -> Array:
-    """What makes the sums of φ″ x over every second sample as good as the integral.
-
-    φ‴ jumps by (1, −4, 6, −4, 1)/(hT)⁴ at the ends of the pieces.  A sum with step 2T is too small by
-    (2T)²/12 of the jump where a sample falls on it, and by −(2T)²/24 where it is half way between two.
-    """
+    """What makes the sums of φ″ x over every second sample as good as the integral. φ‴ jumps by (1, −4, 6,
+    −4, 1)/(hT)⁴ at the ends of the pieces. A sum with step 2T is too small by (2T)²/12 of the jump where a
+    sample falls on it, and by −(2T)²/24 where it is half way between two."""
     found = np.zeros(2 * _reach(piece) + 1)
     for end, jump in zip(range(-2, 3), (1, -4, 6, -4, 1), strict=True):
         at = _reach(piece) + end * piece
@@ -221,7 +216,6 @@ def _weigh(
 # a row in one direction the device moves, and its friction is f_c + b |v| against it.  Between a row and the
 # next it turns; there, and wherever ticks come late, it may stick: friction is then whatever holds it,
 # anything up to f_c, and nothing is concluded from such samples.
-
 
 SLOWEST = 0.05
 """Speed, in parts of the mean speed, below which the device may have stopped between two ticks."""

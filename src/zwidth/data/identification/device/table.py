@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from zwidth.data.identification.device.estimate import Estimate
     from zwidth.data.identification.device.numbers import IdentifiedNumbers
 
-
 SYMBOLS = {
     "mass": "m",
     "damping": "b",
@@ -69,7 +68,6 @@ def named(key: str, motion: str) -> str:
 
 
 def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
-    """The parameters, and what they allow."""
     table = []
     if identified.mass is not None:
         unit = quantity_unit("mass", identified.motion)
@@ -94,7 +92,6 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
 
 
 def facts(identified: IdentifiedNumbers) -> str:
-    """What the numbers rest on, in a line."""
     force = quantity_unit("force", identified.motion)
     inward = told_quantity(identified.fastest[0], "friction_speed", identified.motion, 3)
     outward = told_quantity(identified.fastest[1], "friction_speed", identified.motion, 3)
@@ -108,12 +105,10 @@ def facts(identified: IdentifiedNumbers) -> str:
 
 
 def title(identified: IdentifiedNumbers) -> str:
-    """Where the numbers come from."""
     return f"device identified from {source_name(identified)}"
 
 
 def source_name(identified: IdentifiedNumbers) -> str:
-    """The log's name without its folders, on one line."""
     return one_line(Path(identified.source).name or identified.source)
 
 
@@ -141,7 +136,6 @@ _QUANTITY = {"spring": "stiffness", "force_lag": "delay", "slow": "coulomb_frict
 
 
 def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
-    """See `Identified.to_dict`."""
 
     def key(name: str, quantity: str | None = None) -> str:
         unit = GLOSSARY[quantity or _QUANTITY.get(name, name)].unit_for(identified.motion)
@@ -190,13 +184,11 @@ def _estimate(estimate: Estimate, confidence: float) -> dict[str, Any]:
 # Ends of intervals are rounded outwards, to six digits: what is proved for the file is proved for the
 # interval.  Numbers of the log itself are written in full.
 
-
 DIGITS = 6
 """Significant digits of an identified number."""
 
 
 def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | None) -> str:
-    """The text of the file, see `Identified.to_toml`."""
     lines = [f"# {line}" for line in _story(identified, confidence)]
     lines += ["", "[device]", f"name = {toml(device.name)}", f'motion = "{device.motion}"']
     for key, value in device.parameters().items():
@@ -268,14 +260,11 @@ def _plain(number: float) -> str:
 # equations 21 and 25).  Both are linear in what was identified: their intervals are those of b and f_c, times
 # 2/T and 2/Δ.
 
-
 NARROW = 3.0
 """Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
 
 
 class Limit(NamedTuple):
-    """A bound of the stiffness, from one parameter."""
-
     parameter: str
     """"damping" or "coulomb_friction"."""
     symbol: str
@@ -283,7 +272,6 @@ class Limit(NamedTuple):
     factor: float
     """By which the parameter becomes a stiffness; inf where Δ is 0."""
     estimate: Estimate
-    """Of the parameter."""
     best: float
     """The best guess of what counts of it [N·s/m, N; N·m·s/rad, N·m]."""
     least: Callable[[float], float]
@@ -366,16 +354,14 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     factor, speed = spoken(GLOSSARY["friction_speed"].unit_for(identified.motion))
     inward, outward = (factor * fast for fast in identified.fastest)
     lines.append(
-        f"friction was seen up to {inward:.3g} {speed} into the wall and {outward:.3g} out of it; at "
-        "higher speeds it is not known: "
-        "log quicker strokes, zwidth plan --speed says which"
+        f"friction was seen up to {inward:.3g} {speed} into the wall and {outward:.3g} out of it; at higher "
+        "speeds it is not known: log quicker strokes, zwidth plan --speed says which"
     )
     slow, quick = np.quantile(np.abs(identified.seen["speed"].values), [0.1, 0.9])
     if quick < NARROW * slow:
         lines.append(
             f"most of the motion is between {factor * slow:.2g} and {factor * quick:.2g} {speed}: slower and "
-            "quicker strokes "
-            "tell damping and Coulomb friction apart"
+            "quicker strokes tell damping and Coulomb friction apart"
         )
     return tuple(lines)
 

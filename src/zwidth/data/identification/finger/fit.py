@@ -33,10 +33,8 @@ from zwidth.native.compiled import Array
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
 LATER = (0.0, 1e-3, 2e-3, 3e-3, 5e-3, 8e-3, 12e-3)
 """By which the force is read later, in search of a large τ [s]."""
-
 
 SHORTEST = 4
 """Samples of a quarter of a pulse: the shorter, the more is seen of the moment."""
@@ -58,14 +56,11 @@ class Lag(NamedTuple):
     seen: bool
     """True where τ = 0 is outside for the later moment, and for the earlier too where `sure`."""
     sure: bool
-    """See there."""
 
 
 def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
-    """How late the force of the hand is beside the actuator's; None where nothing tells.
-
-    `total` is the fit of device and finger to the actuator's force, whose delay is in samples.
-    """
+    """How late the force of the hand is beside the actuator's; None where nothing tells. `total` is the fit
+    of device and finger to the actuator's force, whose delay is in samples."""
     other = weights(LONGER * shape.piece, delay)
     rows, longer = (means(pieces, s, period) for s in (shape, other))
     if rows is None or longer is None:
@@ -142,11 +137,8 @@ def _worse(more: Array) -> float:
 
 
 def _moments(delay: float) -> tuple[float, float]:
-    """By how much the actuator's steps look late where the force is in time: least and most [samples].
-
-    Read first at the sample after it, and straight between samples, a step is half a sample before that
-    sample.
-    """
+    """By how much the actuator's steps look late where the force is in time: least and most [samples]. Read
+    first at the sample after it, and straight between samples, a step is half a sample before that sample."""
     if delay == int(delay):
         return -0.5, 0.5
     known = ceil(delay) - 0.5 - delay
@@ -156,7 +148,6 @@ def _moments(delay: float) -> tuple[float, float]:
 # Least squares with instruments over short pieces, what is slow taken out, the pieces as measure of scatter.
 #
 # θ = (Σ Zᵀ A)⁻¹ Σ Zᵀ y        V = (ZᵀA)⁻¹ (Σ_p g_p g_pᵀ) (ZᵀA)⁻ᵀ n/(n − 3),   g_p = Σ_{p} z (y − aᵀ θ)
-
 
 TERMS = ("mass", "damping", "stiffness")
 
@@ -171,26 +162,19 @@ FEWEST = 10
 
 
 class Fit(NamedTuple):
-    """θ."""
-
     values: Array
     """Mass, damping, stiffness."""
     covariance: Array
-    """V."""
     pieces: int
     pulses: int
-    """How many they rest on."""
     explained: float
-    """r²."""
     further: float = 0.0
     further_error: float = 0.0
     """What was fitted besides, and its standard error; 0 where nothing was."""
 
     @property
     def errors(self) -> Array:
-        """Standard errors."""
-        found: Array = np.sqrt(np.diag(self.covariance))
-        return found
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
 
 
 def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = False) -> Fit | None:
@@ -245,8 +229,7 @@ def solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64])
 def _cubic(place: tuple[int, ...]) -> Array:
     """Cubics of time, orthonormal; most pieces have their pulses at the same places."""
     time = np.array(place) - np.mean(place)
-    found: Array = np.linalg.qr(np.vander(time / np.abs(time).max(), SLOW))[0]
-    return found
+    return np.asarray(np.linalg.qr(np.vander(time / np.abs(time).max(), SLOW))[0])
 
 
 def without_slow(

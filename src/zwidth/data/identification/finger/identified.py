@@ -48,10 +48,9 @@ def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
     if log.motion == "rotary" or (high >= SOFTEST and low <= STIFFEST):
         return
     raise InputError(
-        f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that "
-        f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(pieces)}; most likely a unit "
-        f"is off by 1000, "
-        'such as mm read as m or mN as N: state it with units={"position": "mm"}, or with scale'
+        f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that ({SOFTEST:g} "
+        f"to {STIFFEST:g} N/m at the most): {_ranges(pieces)}; most likely a unit is off by 1000, such as mm "
+        'read as m or mN as N: state it with units={"position": "mm"}, or with scale'
     )
 
 
@@ -75,23 +74,18 @@ def _ranges(pieces: Pieces) -> str:
 
 
 def refuse_disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> None:
-    """Refuse two forces that are not of one finger, by its stiffness by each.
-
-    Where the device's Coulomb friction is not known, it was left out of the second.
-    """
+    """Refuse two forces that are not of one finger, by its stiffness by each. Where the device's Coulomb
+    friction is not known, it was left out of the second."""
     apart = 1.0 if friction_known else APART
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
     if low <= apart * most and least <= apart * high:
         return
     raise InputError(
-        f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's "
-        f"force and "
-        f"{actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely "
-        f"one of them has "
-        "another unit or scale than was stated, the load cell is at the end of its range, or more "
-        "than the actuator "
-        "and the finger act on the device; check both with a known weight, or leave one out with "
-        'columns={"hand_force": None} and the device given'
+        f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's force "
+        f"and {actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely one "
+        "of them has another unit or scale than was stated, the load cell is at the end of its range, or "
+        "more than the actuator and the finger act on the device; check both with a known weight, or leave "
+        'one out with columns={"hand_force": None} and the device given'
     )
 
 
@@ -134,10 +128,8 @@ def unseen_lag(lag: Lag) -> Finding:
 
 
 def widened(fit: Fit, lag: Lag | None) -> np.ndarray:
-    """What a lag that may be there takes from mass, damping and stiffness.
-
-    c τ of mass and k τ of damping, c being larger by as much: (c + k τ) τ and k τ.
-    """
+    """What a lag that may be there takes from mass, damping and stiffness. c τ of mass and k τ of damping, c
+    being larger by as much: (c + k τ) τ and k τ."""
     if lag is None or not lag.seen:
         return np.zeros(len(TERMS))
     _, damping, stiffness = np.abs(fit.values)

@@ -244,8 +244,7 @@ def _shift(task: _Task, road: _Road) -> Array:
 
 def _apart(ways: Ways) -> Array:
     """What pulses twice as long change, and more, since they are not endless."""
-    found: Array = SAFETY * np.abs(ways.fit.values - ways.longer.values)
-    return found
+    return np.asarray(SAFETY * np.abs(ways.fit.values - ways.longer.values))
 
 
 def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Finding]]:
@@ -356,10 +355,8 @@ def _doubt(ways: Ways, rows: Means | None, friction: float, most: float) -> Arra
 
 
 def _half_a_sample(values: Array, period: float) -> Array:
-    """What it matters when within a sample the force steps, which only the actuator's force tells.
-
-    c v + k x at t + τ are c (v + τ a) + k (x + τ v): τ early reads c τ more mass and k τ more damping.
-    """
+    """What it matters when within a sample the force steps, which only the actuator's force tells. c v + k x
+    at t + τ are c (v + τ a) + k (x + τ v): τ early reads c τ more mass and k τ more damping."""
     _, damping, stiffness = np.abs(values)
     return np.array([damping, stiffness, 0.0]) * period / 2
 

@@ -51,7 +51,6 @@ class Means(NamedTuple):
     expected: Array | None
     """The same as the perturbation alone would have it; None where it is not known."""
     hand: Array | None
-    """f_h."""
     actuator: Array | None
     actuator_slope: Array | None
     """f_a as it was held, and its rate."""
@@ -61,15 +60,12 @@ class Means(NamedTuple):
     """sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside
     strokes."""
     piece: NDArray[np.int64]
-    """Which piece it is of."""
 
 
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
-    """The log cut into pieces of so many seconds, each within a run; what is left over is not used.
-
-    Where the hand's force answers, no means are taken of a piece in which its sensor is at an end of its
-    range: as a whole, since which of its pulses stay must not depend on the force that they show.
-    """
+    """The log cut into pieces of so many seconds, each within a run; what is left over is not used. Where the
+    hand's force answers, no means are taken of a piece in which its sensor is at an end of its range: as a
+    whole, since which of its pulses stay must not depend on the force that they show."""
     size = round(seconds / log.sample_period)
     runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]
     if not runs:
@@ -93,10 +89,8 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
 
 
 def response(log: Log, pieces: Pieces, total: Array, delay: float) -> Array:
-    """The position that the actuator's force alone would make of mass, damping and stiffness.
-
-    It only serves as instrument and need not be exact: the delay is taken in whole samples.
-    """
+    """The position that the actuator's force alone would make of mass, damping and stiffness. It only serves
+    as instrument and need not be exact: the delay is taken in whole samples."""
     mass, damping, stiffness = (max(float(v), 1e-9) for v in total)
     numerator, denominator, _ = cont2discrete(([-1.0], [mass, damping, stiffness]), log.sample_period, "zoh")
     late = round(delay / log.sample_period)
@@ -138,8 +132,7 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
 
     def mean(rows: Array, weights: Array, before: int = reach) -> Array:
         windows = sliding_window_view(rows[clear], weights.size, axis=1)[:, centres - before]
-        found: Array = (windows @ weights).ravel()
-        return found
+        return np.asarray((windows @ weights).ravel())
 
     def motion(rows: Array, some: Array | float) -> Array:
         near = rows - rows[:, :1]  # against rounding
@@ -180,11 +173,8 @@ def _centres(size: int, shape: Weights) -> NDArray[np.int64]:
 
 
 def _turning(side: Array) -> Array:
-    """Each 0 replaced by the nearest sign in its row.
-
-    A count is left by the edge by which it was entered, and a device that only turns, under a force that
-    hardly changes, turns in the middle between the two.
-    """
+    """Each 0 replaced by the nearest sign in its row. A count is left by the edge by which it was entered,
+    and a device that only turns, under a force that hardly changes, turns in the middle between the two."""
     at = np.broadcast_to(np.arange(side.shape[1]), side.shape)
     before = np.maximum.accumulate(np.where(side != 0, at, 0), axis=1)
     after = np.minimum.accumulate(np.where(side != 0, at, side.shape[1] - 1)[:, ::-1], axis=1)[:, ::-1]
@@ -205,7 +195,6 @@ def _turning(side: Array) -> Array:
 # A hand that moves a device in strokes of some hertz does not tell such sums from those of smooth pulses, as
 # `pulses` has them; a perturbation of 50 Hz at 1 kHz does, by (ωT)²/12, a per cent of the finger's mass.
 
-
 _SPLINE = BSpline.basis_element(np.arange(-2.0, 3.0), extrapolate=False)
 
 
@@ -219,7 +208,6 @@ class Weights(NamedTuple):
     motion: tuple[Array, Array, Array]
     """Weights that make ẍ T², ẋ T and x."""
     force: Array
-    """Of a force that was measured at the samples."""
     held: Array
     steps: Array
     """Of a held force, and of its rate times T, from −reach − lag on."""
@@ -248,5 +236,4 @@ def _integral(value: Array, at: NDArray[np.floating[Any]]) -> Array:
     inside = np.clip(at, 0.0, value.size - 1.0)
     k = np.minimum(inside.astype(np.int64), value.size - 2)
     u = inside - k
-    found: Array = whole[k] + value[k] * u + (value[k + 1] - value[k]) * u * u / 2
-    return found
+    return np.asarray(whole[k] + value[k] * u + (value[k + 1] - value[k]) * u * u / 2)

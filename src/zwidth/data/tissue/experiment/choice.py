@@ -62,10 +62,8 @@ class Tried(NamedTuple):
 
 
 def understood(test: History, zero: bool) -> History:
-    """The test with a surface where two branches do better with one, else without.
-
-    A model with a branch too few would take the other for a surface.
-    """
+    """The test with a surface where two branches do better with one, else without. A model with a branch too
+    few would take the other for a surface."""
     if test.surface is None:
         return test
     alone, fines = test._replace(surface=None), fines_of(test)
@@ -78,10 +76,8 @@ def understood(test: History, zero: bool) -> History:
 
 
 def tried(test: History, zero: bool, names: tuple[str, ...] = ()) -> list[Tried]:
-    """Every model that such a test allows, the smallest AICc first.
-
-    A third branch is tried where the second was worth its numbers.
-    """
+    """Every model that such a test allows, the smallest AICc first. A third branch is tried where the second
+    was worth its numbers."""
     every: list[Tried] = []
     fines = fines_of(test)
     for model in _models(test):
@@ -118,10 +114,8 @@ def label(model: Model) -> str:
 
 
 def _tried(model: Model, test: History, fines: list[Fine], zero: bool) -> Tried:
-    """With the curve between the samples that leaves least, where it matters which.
-
-    Each but the first, which is smooth, must do better than it by more than `SEEN`.
-    """
+    """With the curve between the samples that leaves least, where it matters which. Each but the first, which
+    is smooth, must do better than it by more than `SEEN`."""
     task = Task(model, test, fines[0], zero)
     every = [Tried(task, found := solved(task), criterion(found) - SEEN)]
     for fine in fines[1:]:
@@ -197,7 +191,6 @@ def leftover(found: Solved) -> float:
 #     (S(τ) − S)/s² ≤ t²,     S the least sum of squares, s² = S/(N − k), t of Student, one-sided 95 %
 #
 # A Maxwell body is given a spring beside it: that nothing is left in the end is what such a test cannot show.
-
 
 ENOUGH = 1.0
 """Of the test, that the slowest relaxation time may last and still be seen to fade."""

@@ -40,13 +40,11 @@ _WORDS: Mapping[str, tuple[str, ...]] = {
     "indentation": (
         "indentation depth penetration eindringtiefe eindringung tiefe enfoncement indentación profundidad",
         "displacement disp deflection compression extension elongation stroke travel weg standardweg "
-        "prüfweg traversenweg verschiebung auslenkung "
-        "déplacement deplacement desplazamiento spostamento",
+        "prüfweg traversenweg verschiebung auslenkung déplacement deplacement desplazamiento spostamento",
         "position pos crosshead traverse distance height z x",
     ),
     "force": ("force load kraft standardkraft last effort fuerza forza fz fn f",),
 }
-"""Words of each quantity, the better ones first."""
 
 _OTHER_WORDS = """
 setpoint target commanded command desired rate speed velocity stress strain error std deviation temperature
@@ -129,21 +127,16 @@ def recognised(
 
 def _side_by_side(table: Table) -> dict[str, list[str]]:
     """The columns of several tests beside each other, named alike but for a number; {} where there are not.
-
-    They may have one column of time together.
-    """
+    They may have one column of time together."""
     found: dict[str, list[str]] = {}
     for quantity in QUANTITIES:
         taken = [name for names in found.values() for name in names]
         found[quantity] = _candidates(table, quantity, [name for name in table.units if name not in taken])
     tests = max(map(len, found.values()))
-    alike = all(len({_stem(name) for name in names}) == 1 for names in found.values())
+    stems = [{re.sub(r"\s*\d+", "", _AGAIN.sub("", n)).lower() for n in names} for names in found.values()]
+    alike = all(len(each) == 1 for each in stems)
     own = len(found["indentation"]) == len(found["force"]) == tests
     return found if tests > 1 and alike and own and len(found["time"]) in (1, tests) else {}
-
-
-def _stem(name: str) -> str:
-    return re.sub(r"\s*\d+", "", _AGAIN.sub("", name)).lower()
 
 
 def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[str]) -> str:
@@ -195,7 +188,6 @@ def _candidates(table: Table, quantity: str, names: list[str]) -> list[str]:
 
 
 def _words(column: str) -> list[str]:
-    """The words of a name without its unit, in small letters: "Compressive load [N]", "indentationDepth"."""
     name = _split(column)[0]
     return [word.lower() for word in _WORD.findall(re.sub(r"([a-z])([A-Z])", r"\1 \2", name))]
 
@@ -205,17 +197,13 @@ def _split(column: str) -> tuple[str, str | None]:
     bare = _AGAIN.sub("", column.strip().strip('"'))
     for pattern in (_BRACKETS, _SLASH, _LAST):
         found = pattern.match(bare)
-        if found and (_is_unit(found["unit"]) or pattern is _BRACKETS):
+        if found and (_kind(found["unit"], "") is not None or pattern is _BRACKETS):
             return found["name"], found["unit"].strip() or None
     return bare, None
 
 
 def _unit(table: Table, column: str) -> str | None:
     return table.units[column] or _split(column)[1]
-
-
-def _is_unit(text: str) -> bool:
-    return _kind(text, "") is not None
 
 
 def _kind(unit: str | None, quantity: str) -> str | None:
@@ -235,7 +223,6 @@ def _kind(unit: str | None, quantity: str) -> str | None:
 
 
 def _refuse_without_unit(table: Table, found: Mapping[str, str], units: Mapping[str, str]) -> None:
-    """Ask for all units that nobody states at once."""
     lacking = [q for q, name in found.items() if q not in units and not spelled(_unit(table, name) or "")]
     if lacking:
         names = listed([found[q] for q in lacking])
@@ -248,7 +235,6 @@ _EXAMPLES = {"time": "s", "indentation": "mm", "force": "N"}
 
 
 def _factor(table: Table, quantity: str, column: str, given: str | None) -> float:
-    """SI per number in the column."""
     unit = given if given is not None else _unit(table, column)
     assert unit is not None
     kind = _kind(unit, quantity)
@@ -318,7 +304,6 @@ def read_tests(
 def _read(
     table: Table, columns: Mapping[str, str] | None, units: Mapping[str, str] | None, number: int
 ) -> Raw:
-    """The columns of a table; of tests side by side that of a number."""
     known = recognised(table, columns, units, number)
     names = [known.time.name, known.indentation.name, known.force.name]
     wanted = [*names, known.trial] if known.trial else names

@@ -53,7 +53,6 @@ class Solved(NamedTuple):
 
     @property
     def whitened(self) -> tuple[Array, Array]:
-        """W r and W J."""
         return self.noise.whitened(self.left), self.noise.whitened(self.jacobian)
 
     @property
@@ -161,7 +160,6 @@ def covariance(found: Solved) -> tuple[Array, float]:
 #
 # which, other than the likelihood, does not take the freedom of the fit for lack of noise.
 
-
 SEEN = 4.0
 """Of −2 ln L, by which a memory must do better than none: some 5 % of white noise passes for more."""
 
@@ -267,7 +265,6 @@ def likelihood(noise: Noise, residuals: Array) -> float:
 #
 # With σ the standard deviation of ln θ, δ = ± tσ (1 + c t): c = 0 is the usual interval.  It is found at 95 %
 # on each side; at another level c is taken to be the same.
-
 
 CURVED = 0.03
 """Standard deviation of a logarithm, below which the usual interval will do."""

@@ -29,7 +29,6 @@ HOLE = 4.0
 SMALL = 0.02
 """Of the largest force, below which nothing is touched; and of the way, below which none was gone."""
 
-
 PIECES = 40
 """Of a test, in each of which a mean speed and force are taken."""
 
@@ -44,7 +43,6 @@ class History(NamedTuple):
     force: Array
     """Less its zero before the load, positive out of the tissue [N]."""
     kind: Kind
-    """Which test it is."""
     starts_loaded: bool
     """The step came before the first sample."""
     surface: float | None
@@ -149,7 +147,6 @@ def _of_holes(time: Array, holes: list[int], begins: tuple[int, ...]) -> list[Fi
 
 
 def _turned(trial: Trial, kind: Kind, loaded: bool) -> tuple[Array, Array, list[Finding]]:
-    """Depth and force, both positive where the probe pushes."""
     x, f = trial.indentation, trial.force
     push = float(np.median(f)) if loaded else _furthest(f)
     if push == 0.0:
@@ -192,11 +189,9 @@ def _end(x: Array, f: Array) -> int:
 
 
 def _refuse_torn(time: Array, x: Array, f: Array, source: str) -> None:
-    """Refuse a force that falls while the probe goes on, as where a needle breaks in or a specimen breaks.
-
-    f = ∫ G(t − s) v(s) ds with G ≥ 0, so that at speeds between v and V it never falls below v/V of what it
-    was; half of that here, for a probe that first gathers speed, and for speeds between the edges.
-    """
+    """Refuse a force that falls while the probe goes on, as where a needle breaks in or a specimen breaks. f
+    = ∫ G(t − s) v(s) ds with G ≥ 0, so that at speeds between v and V it never falls below v/V of what it
+    was; half of that here, for a probe that first gathers speed, and for speeds between the edges."""
     edges = np.linspace(0, time.size - 1, min(PIECES, time.size // 3) + 1).astype(int)
     speed = np.diff(x[edges]) / np.diff(time[edges])
     first = int(np.argmax(speed > 0.5 * speed.max()))
@@ -242,7 +237,6 @@ def _noise_before(x: Array, f: Array) -> float:
 
 
 def about_surface(surface: float) -> Finding:
-    """That it is fitted."""
     text = f"the probe comes from outside and touches after {shown(surface, 'm', 3)}: that depth is fitted"
     return Finding(kind="surface", text=text)
 
@@ -256,7 +250,6 @@ def about_surface(surface: float) -> Finding:
 # Held is what stays in a narrow band for most of the time.  Where both do, it is what stays there longer;
 # where they do for nearly as long, as a force that has faded quickly does, it is the quieter: what a machine
 # holds it holds by what it measures well.
-
 
 Kind = Literal["relaxation", "creep", "loading"]
 KINDS: tuple[Kind, ...] = ("relaxation", "creep", "loading")
@@ -275,7 +268,6 @@ NOISES = 6.0
 
 
 def kind_of(time: Array, indentation: Array, force: Array) -> Kind:
-    """The kind of a test."""
     probe, push = held_for(time, indentation), held_for(time, force)
     if max(probe, push) < MOST:
         return "loading"

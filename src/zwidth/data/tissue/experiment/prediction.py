@@ -65,7 +65,6 @@ class Task(NamedTuple):
 
     @property
     def own(self) -> int:
-        """Parameters of the model."""
         return len(self.model.parameters)
 
     @property
@@ -80,7 +79,6 @@ class Task(NamedTuple):
 
     @property
     def size(self) -> float:
-        """Of the output."""
         return float(np.abs(self.output).max()) or 1.0
 
     @property
@@ -94,7 +92,6 @@ class Task(NamedTuple):
         return self.test.depth if self.test.kind == "creep" else self.test.force
 
     def record(self, surface: float) -> Record:
-        """The test at its samples, as a search begins with it."""
         test = self.test
         depth = np.maximum(test.depth - surface, 0.0) if self.surface else test.depth
         rest = 0.0 if test.starts_loaded or test.kind == "creep" else None
