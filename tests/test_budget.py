@@ -19,25 +19,25 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 LINES = {
     "beside the rooms": 928,
     "checker": 10017,
-    "cli": 10407,
-    "data": 20722,
+    "cli": 10435,
+    "data": 21573,
     "links": 2316,
     "loop": 6064,
     "machine": 17454,
-    "model": 17218,
+    "model": 17234,
     "native": 1658,
-    "passivity": 26506,
-    "quantity": 2054,
+    "passivity": 26530,
+    "quantity": 2056,
     "show": 8844,
     "study": 5485,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 129673
-PHYSICS = 61859
+IN_ALL = 130594
+PHYSICS = 61901
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 651, 25
+FILES_IN_ALL, IN_A_FOLDER = 652, 25
 
 ALONE = 134
 """Files that one other file alone imports."""
