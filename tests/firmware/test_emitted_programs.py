@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from firmware.emulated.board import Board
 from firmware.emulated.built import STRICT
 from firmware.emulated.built import WARNED as PEDANTIC
 from firmware.emulated.required import tool
@@ -53,9 +54,10 @@ def force(data: object, error: float) -> None:
 
 
 @pytest.mark.parametrize("number", ["fixed", "float"])
-def test_a_hapkit_alone_gives_the_force_that_was_proved(chip: Path, tmp_path: Path, number: str) -> None:
+def test_a_hapkit_alone_gives_the_force_that_was_proved(tmp_path: Path, number: str) -> None:
     found = written(tmp_path / "wall", "arduino", number)
-    run(chip, sketch(tmp_path / "wall"), "1000", tmp_path / "line.bin")
+    with Board(sketch(tmp_path / "wall"), tmp_path / "line.bin") as board:
+        board.swing(1000)
     data = read_telemetry(tmp_path / "line.bin")
     assert data.attrs["certificate_sha256"] == found.certificate_sha256
     assert data.actuator_force.values.max() > 0.5
@@ -63,13 +65,12 @@ def test_a_hapkit_alone_gives_the_force_that_was_proved(chip: Path, tmp_path: Pa
 
 
 @pytest.mark.parametrize(("delay", "in_time"), [(0.25e-3, True), (0.02e-3, False)])
-def test_a_force_later_than_the_proof_counts_ends_it(
-    chip: Path, tmp_path: Path, delay: float, in_time: bool
-) -> None:
+def test_a_force_later_than_the_proof_counts_ends_it(tmp_path: Path, delay: float, in_time: bool) -> None:
     """The sensor alone takes the chip 26 us: a law that was proved for a force within 20 us is not served."""
     device = HAPKIT.replace(delay=zw.Interval(0, zw.Exact(delay)))
     emit(device, zw.Wall(150), target="arduino").write(tmp_path / "wall")
-    run(chip, sketch(tmp_path / "wall"), "400", tmp_path / "line.bin")
+    with Board(sketch(tmp_path / "wall"), tmp_path / "line.bin") as board:
+        board.swing(400)
     phases = read_telemetry(tmp_path / "line.bin").phase.values
     assert ((phases == 1).sum() > 100) == in_time
     assert (phases[-1] == 2) != in_time

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import subprocess
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
+from firmware.emulated.board import Board
 from firmware.emulated.built import sizes
 from firmware.emulated.required import tool
 from firmware.tools import DATA, KINDS, law_forces, run, sketch, written
@@ -16,28 +16,12 @@ from zwidth.machine.firmware.targets import main_files
 from zwidth.machine.firmware.telemetry import read_telemetry
 
 
-class Ran(NamedTuple):
-    """What the chip did; cycles of 16 MHz."""
-
-    samples: int
-    least_apart: int
-    most_apart: int
-    longest: int
-    width: int
-    widest: int
-    width_as_it_hung: int
-
-
 def wall(folder: Path, kind: int) -> Path:
     return sketch(written(main_files("arduino", folder="wall"), folder / "wall"), f"-DLAW_KIND={kind}")
 
 
-def ran(chip: Path, *words: str | Path) -> Ran:
-    return Ran(*map(int, run(chip, *words).splitlines()[-1].split()))
-
-
 @pytest.mark.parametrize("kind", [2, 3, 4])
-def test_a_second_on_the_chip(chip: Path, tmp_path: Path, kind: int) -> None:
+def test_a_second_on_the_chip(tmp_path: Path, kind: int) -> None:
     """A sample each 16 000 cycles, to an instruction or two; all arrive, and have the law's forces.
 
     It fits: 32 KiB of program, 2 KiB of memory, of which the stack needs some.
@@ -46,10 +30,12 @@ def test_a_second_on_the_chip(chip: Path, tmp_path: Path, kind: int) -> None:
     flash, ram = sizes("avr-size", program)
     assert flash < 32_256
     assert ram < 1024
-    did = ran(chip, program, "1000", tmp_path / "line.bin")
-    assert did.samples == 999
-    assert 15_990 <= did.least_apart <= did.most_apart <= 16_010
-    assert did.longest < 8_000
+    with Board(program, tmp_path / "line.bin") as board:
+        begun, ended, widths = np.array(board.swing(1000)).T
+    assert begun.size == 999
+    apart = np.diff(begun)[1:]
+    assert 15_990 <= apart.min() <= apart.max() <= 16_010
+    assert (ended - begun).max() < 8_000
     data = read_telemetry(tmp_path / "line.bin")
     assert (data.attrs["lost_packets"], data.attrs["dropped_samples"]) == (0, 0)
     assert data.sizes["time"] > 940
@@ -59,14 +45,17 @@ def test_a_second_on_the_chip(chip: Path, tmp_path: Path, kind: int) -> None:
     served = data.phase.values == 1
     assert served.sum() > 900
     assert np.abs(data.actuator_force.values - law_forces(counts, kind))[served].max() < 2e-4
-    assert did.widest > 100
+    assert widths.max() > 100
 
 
-def test_where_the_chip_hangs_its_watchdog_ends_the_force(chip: Path, tmp_path: Path) -> None:
-    did = ran(chip, wall(tmp_path, 3), "600", tmp_path / "line.bin", "350")
-    assert did.width_as_it_hung > 100
-    assert did.width == 0
-    assert 16_000 * 15 < did.most_apart < 16_000 * 25  # the watchdog's 16 ms, and the start
+def test_where_the_chip_hangs_its_watchdog_ends_the_force(tmp_path: Path) -> None:
+    with Board(wall(tmp_path, 3), tmp_path / "line.bin") as board:
+        before = board.swing(350)
+        board.hang()
+        after = board.swing(600)
+    assert before[-1][2] > 100
+    assert not any(width for _, _, width in after)
+    assert 16_000 * 15 < after[0][0] - before[-1][0] < 16_000 * 25  # the watchdog's 16 ms, and the start
     data = read_telemetry(tmp_path / "line.bin")
     assert (int(data.start.values[-1]), int(data.phase.values[-1]), int(data.reason.values[-1])) == (1, 2, 6)
     assert (data.actuator_force.values[data.start.values == 1] == 0).all()
@@ -101,5 +90,10 @@ def test_two_seconds_on_the_machine(tmp_path: Path, kind: int) -> None:
     assert np.abs(data.actuator_force.values - law_forces(counts, kind)).max() < 1e-4
 
 
-def test_a_fault_of_the_processor_ends_in_force_0(tmp_path: Path) -> None:
-    assert ended(tmp_path / "board", 3, "-DFAULTY=580") == 7
+@pytest.mark.parametrize(
+    ("options", "status"),
+    [([], 7), (["-DLONG=10000"], 7), (["-DLONG=100"], 0)],
+    ids=["a fault of the processor", "longer than its period", "not so long"],
+)
+def test_a_fault_in_a_sample_ends_in_force_0(tmp_path: Path, options: list[str], status: int) -> None:
+    assert ended(tmp_path / "board", 3, "-DFAULTY=580", *options) == status

@@ -1,7 +1,7 @@
 /* The hooks of the Cortex-M program on the mps2-an386 that QEMU emulates: a handle that swings, its first UART.
  *
  * After SAMPLES samples the emulator ends, once the line is empty; with FAULTY a fault comes in the sample of
- * that number, and the status is 7 where a force acted before and 0 is applied after it.
+ * that number, or LONG turns of a loop; the status is 7 where a force acted before and 0 is applied in that sample.
  */
 #include <stdint.h>
 
@@ -24,7 +24,12 @@ int32_t position_counts(void) {
   const int32_t phase = (int32_t)(samples++ % 800);
 #ifdef FAULTY
   if (samples == FAULTY) {
+#ifdef LONG
+    for (volatile uint32_t k = 0; k < LONG; k++) {
+    }
+#else
     __asm volatile("udf #0");
+#endif
   }
 #endif
   return phase < 200 ? -phase : phase < 600 ? phase - 400 : 800 - phase; /* 0, -200, 200, 0 */
