@@ -161,6 +161,9 @@ void count_time() {
 }
 
 ISR(TIMER1_COMPA_vect) {
+  if (guarded.phase == GUARD_SERVING && (TIFR1 & (1 << OCF1B))) {  // see below; a period or more may be missed
+    guard_end(&guarded, GUARD_LATE);
+  }
   law_force force = guard_step(&guarded, position_counts());
   apply_force(force);
   if (DELAY_TICKS > 0 && TCNT1 > DELAY_TICKS) {  // later than the proof counts
@@ -174,6 +177,8 @@ ISR(TIMER1_COMPA_vect) {
     guard_end(&guarded, GUARD_LATE);
     apply_force(0);
   }
+  OCR1B = (uint16_t)(TCNT1 - 1);  // its flag comes a turn later: by then the next sample must have begun
+  TIFR1 = 1 << OCF1B;
   wdt_reset();
 }
 
