@@ -23,6 +23,7 @@ from .loop.ledger import FORCE_BOUNDING, WAVE_PORT, force_bounding, wave_port
 from .loop.linear import DELAYS, LINEAR, QUANTIZED, delays, linear, quantized
 from .loop.motion import MOTION, motion_energy, stored_at_start
 from .loop.spring import NONLINEAR_SPRING, SPRING, endless_pull, nonlinear_spring, spring
+from .loop.transmission import ELASTIC, ELASTIC_VIOLATION, elastic, elastic_violation
 from .loop.violation import VIOLATION, violation
 from .pair.held import HELD_MOTION, HELD_PAIR, HELD_VIOLATION, held_motion_energy, held_pair, held_violation
 from .pair.motion import PAIR_MOTION, pair_motion_energy, pair_stored_at_start
@@ -133,6 +134,10 @@ KINDS: dict[str, Kind] = {
     "linear": Kind(LINEAR, _proof(linear), _of_every_hand(KEPT)),
     "quantized": Kind(QUANTIZED, _proof(quantized), _of_every_hand(KEPT)),
     "delays": Kind(DELAYS, _proof(delays), _of_every_hand(KEPT)),
+    "transmission": Kind(ELASTIC, _proof(elastic), _of_every_hand(KEPT)),
+    "transmission violation": Kind(
+        ELASTIC_VIOLATION, _proof(elastic_violation), _of_every_hand(KEPT, ACTIVE)
+    ),
     "contact": Kind(CONTACT, _proof(contact), _of_every_hand(BROKEN)),
     "relaxing contact": Kind(RELAXING_CONTACT, _proof(relaxing_contact), scope.of_a_fed_law),
     "multiplier contact": Kind(MULTIPLIER_CONTACT, _proof(multiplier_contact), scope.of_a_fed_law),

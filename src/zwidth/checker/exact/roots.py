@@ -25,7 +25,11 @@ def decays(in_zeta: list[Enclosed]) -> bool | None:
     at_one = in_zeta[-1].sign
     if at_one is None or at_one <= 0:  # a root at z = 1 or beyond
         return None if at_one is None else False
-    p = in_z(in_zeta)
+    return decay_in_powers(in_z(in_zeta))
+
+
+def decay_in_powers(p: list[Enclosed]) -> bool | None:
+    """The same of a polynomial in z, descending, its first coefficient and p(1) > 0."""
     while len(p) > 1:
         sign = (p[0] - p[-1]).sign
         if sign != 1:

@@ -36,7 +36,7 @@ def criterion(p: Loop) -> list[Fraction]:
     """q(c) of the loop, times b where part > 0; ascending in c."""
     if p.part:
         return bounded_criterion(p, p.part * (1 - p.part))
-    damped, hold, _ = _cosine_sums(p)
+    damped, hold, _ = cosine_sums(p)
     gain = 2 * p.damping / p.period
     return [gain * x + y for x, y in zip(damped, hold, strict=True)]
 
@@ -44,10 +44,10 @@ def criterion(p: Loop) -> list[Fraction]:
 def bounded_criterion(p: Loop, share: Fraction) -> list[Fraction]:
     """b q(c) with `share` in the place of α(1−α), α = part."""
     gain, b, loss = 2 * p.damping**2 / p.period, p.damping, p.period * share / 2
-    return [gain * x + b * y - loss * z for x, y, z in zip(*_cosine_sums(p), strict=True)]
+    return [gain * x + b * y - loss * z for x, y, z in zip(*cosine_sums(p), strict=True)]
 
 
-def _cosine_sums(p: Loop) -> tuple[list[int], list[Fraction], list[int]]:
+def cosine_sums(p: Loop) -> tuple[list[int], list[Fraction], list[int]]:
     """|D|², −R + (1 + c) S and |N|², from Chebyshev sums; ascending in c."""
     alpha, n, d = p.part, in_whole_numbers(p.numerator, p), in_whole_numbers(p.denominator, p)
     size, longest = len(n) + len(d) + p.whole, bits((*n, *d))

@@ -1,0 +1,288 @@
+"""The linear criterion of a device whose motor and hand move apart, on a cable, a belt or a gear.
+
+A motor (m, b₁) and the hand's side (b₂; its mass plays no part) are joined by k and c; D₁ = m s² + (b₁ + c) s
++ k, Z = k + c s, λ = ω².  A hand moves its side as it likes, and of every motion with the frequencies
+ω_n = (θ + 2πn)/T it pays ½ Σ |v_n|² n(λ_n)/|D₁|²,
+
+    n(λ) = b₂ |D₁|² + b₁ |Z|² + c λ |m s + b₁|² = n₀ + n₁ λ + n₂ λ² .
+
+The held force sees one number of all these, the sampled position, so what it gives back is a form of rank
+two, and the loop is passive exactly if it is stable with the hand's side held, its static stiffness is
+≥ 0 and, at every θ of (0, π], with w = (1 − z⁻¹)/T and a delay of α samples beside whole ones,
+
+    |1 + H w C|² ≥ γ_a γ_q |H w|²
+    γ_a = Σ |Z|²/(2 λ n),   γ_q = γ_a,   C = −Σ W e^{−jω_n αT}/λ,   W = v(s)/(2n)        encoder at the motor
+    v = k² + 2 k b₂ s + (c² − 2 (b₁ + c)(b₂ + c)) s² + 2 m (b₂ + c) s³
+    γ_q = Σ |D₁|²/(2 λ n),   v = Z D₁(−s)                                                encoder at the hand
+
+With one mass C = −γ, and this is the criterion of Colgate & Schenkel.  Each sum is one over the roots −a² of
+n and over λ = 0, hyperbolic in a T and rational in z, so that the criterion times q = Π (cosh aT − cos θ) and
+|D|² is a polynomial in cos θ.  The derivation is in the documentation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from math import cos, pi
+
+from flint import acb, arb, arb_poly, fmpz_poly
+
+from zwidth.errors import InputError
+from zwidth.passivity.linear.exact_algebra import is_schur
+from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
+from zwidth.quantity.balls import ball, middle, precision
+
+_BITS = 320
+"""Of the balls, beside those that cosh aT takes."""
+
+_ROOM = 90
+"""Bits below its largest coefficient at which the polynomial that is proved lies under the criterion."""
+
+LARGEST_TURN = 2000
+"""|a| T up to which a criterion is written down: far more than any cable asks for at its rate."""
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """What stands between motor and hand, exact; `loop` has the friction of the motor's side."""
+
+    loop: LinearLoop
+    # m of the motor's side [kg; kg·m²]
+    mass: Fraction
+    # k [N/m; N·m/rad] and c [N·s/m; N·m·s/rad] between the two, b₂ of the hand's side
+    stiffness: Fraction
+    damping: Fraction
+    handle_damping: Fraction
+    at_handle: bool
+
+    @cached_property
+    def _forms(self) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...], tuple[Fraction, ...]]:
+        """n(λ), 2λnγ_q and v(s), ascending, with T = 1."""
+        t, k = self.loop.period, self.stiffness
+        m, b, c, h = self.mass / t**2, self.loop.damping / t, self.damping / t, self.handle_damping / t
+        dissipated = (
+            (b + h) * k * k,
+            h * ((b + c) ** 2 - 2 * k * m) + b * c * c + c * b * b,
+            (h + c) * m * m,
+        )
+        if self.at_handle:
+            read = (k * k, (b + c) ** 2 - 2 * k * m, m * m)
+            return dissipated, read, (k * k, -k * b, m * k - c * (b + c), m * c)
+        moved = (k * k, 2 * k * h, c * c - 2 * (b + c) * (h + c), 2 * m * (h + c))
+        return dissipated, (k * k, c * c, Fraction(0)), moved
+
+    @property
+    def _pulled(self) -> tuple[Fraction, ...]:
+        """2λnγ_a = |Z|²."""
+        return self.stiffness**2, (self.damping / self.loop.period) ** 2, Fraction(0)
+
+    @property
+    def turn(self) -> float:
+        """The larger |a| T of the roots −a² of n."""
+        n0, n1, n2 = (float(x) for x in self._forms[0])
+        half, root = n1 / n2 / 2, complex(n1 * n1 / n2 / n2 / 4 - n0 / n2) ** 0.5
+        return float(max(abs(half + root), abs(half - root)) ** 0.5)
+
+    @property
+    def bits(self) -> int:
+        """Of a ball that holds the criterion well."""
+        if not self.turn <= LARGEST_TURN:
+            raise InputError(
+                f"a transmission so stiff that {self.turn:.3g} of its radians pass in a sample is not "
+                f"decided (at most {LARGEST_TURN}): take it for rigid, and leave it out"
+            )
+        return _BITS + 8 * int(self.turn) + 8 * self.loop.degree
+
+    def value(self, cosine: Fraction) -> arb:
+        """The criterion times q |D|² at cos θ."""
+        forms, loop = self._forms, self.loop
+        x = ball(cosine)
+        z = acb(x, -(1 - x * x).sqrt())  # z⁻¹
+        sums = _Sums([ball(f) for f in forms[0]], x, z, ball(loop.part_delay))
+        moved = [ball(f) for f in forms[2]]
+        pulled, read = (
+            sums.over([ball(f) for f in form], arb(0), False).real / 2 for form in (self._pulled, forms[1])
+        )
+        delay = ball(loop.part_delay)
+        even = sums.over([moved[0], -moved[2], arb(0)], delay, False)
+        odd = sums.over([moved[1], -moved[3], arb(0)], delay, True)
+        force = _at(loop.numerator, z) * z**loop.whole_delay * (1 - z)
+        law, law_size = _at(loop.denominator, z), (1 - x) * 2 * _size(_at(loop.numerator, z))
+        return (_size(law - force * (even + odd) / 2) - pulled * read * law_size) * sums.scale
+
+    @property
+    def degree(self) -> int:
+        """Of the criterion as a polynomial in cos θ, at most."""
+        loop = self.loop
+        return max(len(loop.denominator), len(loop.numerator) + loop.whole_delay + 1) + 1
+
+    @cached_property
+    def polynomial(self) -> tuple[fmpz_poly, int]:
+        """A whole polynomial p with p 2^−shift a hair below the criterion on [−1, 1]."""
+        count = self.degree + 1
+        places = [Fraction(round(2**40 * cos(pi * (i + 0.5) / count)), 2**40) for i in range(count)]
+        with precision(self.bits):
+            values = [self.value(place) for place in places]
+            found = arb_poly.interpolate([ball(place) for place in places], values)
+            coefficients = [middle(found[i]) for i in range(count)]
+            largest = max(map(abs, coefficients))
+            if not largest:
+                return fmpz_poly([0]), 0
+            shift = 2 * _ROOM - _exponent(largest)
+            whole = [_times_power(c, shift) for c in coefficients]
+        whole[0] -= 1 << _ROOM
+        return fmpz_poly(whole), shift
+
+    @cached_property
+    def held(self) -> bool | None:
+        """Whether the loop is stable with the hand's side held; None where that is too close to tell."""
+        loop = self.loop
+        if self.at_handle:
+            return is_schur(loop.denominator[::-1])
+        with precision(self.bits):
+            swings = self._swing()
+            law = arb_poly([arb(c) for c in loop.denominator])
+            force = arb_poly([arb(0)] * loop.whole_delay + [arb(c) for c in loop.numerator])
+            closed = law * arb_poly(swings[0]) + force * arb_poly(swings[1])
+            size = max(len(loop.denominator) + 2, len(loop.numerator) + loop.whole_delay + 3)
+            return _decays([closed[i] for i in range(size)])
+
+    def _swing(self) -> tuple[list[arb], list[arb]]:
+        """det(z − Φ) z⁻² and the motor's position after its held force, ascending in z⁻¹."""
+        t, part = self.loop.period, self.loop.part_delay
+        m, k = ball(self.mass / t**2), ball(self.stiffness)
+        drag = ball((self.loop.damping + self.damping) / t)
+        half = drag / m / 2
+        root = acb(half * half - k / m).sqrt()
+        root = root if root.abs_lower() > 0 else root + acb(arb(2) ** (-self.bits // 2))
+
+        def moved(time: arb) -> tuple[arb, arb, arb, arb]:
+            """φ₁₂, φ₂₂ and the position and speed after a force of 1 held so long."""
+            fall, swing = (-half * time).exp(), (root * time)
+            rise = (swing.sinh() / root).real * fall
+            stay = swing.cosh().real * fall
+            return rise, stay - half * rise, (1 - stay - half * rise) / k, rise / m
+
+        after, whole, late = moved(ball(1 - part)), moved(arb(1)), moved(ball(part))
+        rise, hold = whole[0], whole[1]
+        fall = (-2 * half).exp()
+        trace = 2 * (hold + half * rise)
+        now = (after[2], after[3])
+        first = hold_after = after[0], after[1]  # φ₁₂, φ₂₂ over what is left of the sample
+        stays = hold_after[1] + 2 * half * first[0]  # φ₁₁
+        before = (stays * late[2] + first[0] * late[3], -(k / m) * first[0] * late[2] + first[1] * late[3])
+        return (
+            [arb(1), -trace, fall],
+            [
+                arb(0),
+                now[0],
+                rise * now[1] - hold * now[0] + before[0],
+                rise * before[1] - hold * before[0],
+            ],
+        )
+
+
+class _Sums:
+    """Σ over n of what is rational in λ, at one θ, T = 1."""
+
+    def __init__(self, form: list[arb], x: arb, z: acb, delay: arb) -> None:
+        self.form, self.x, self.z = form, x, z
+        half = acb(form[1] / form[2] / 2)
+        root = (half * half - form[0] / form[2]).sqrt()
+        if not root.abs_lower() > 0:  # two equal roots: what is claimed is decided elsewhere
+            root += half * arb(2) ** -200
+        self.squares = half + root, half - root
+        self.roots = [square.sqrt() for square in self.squares]
+        self.falls = [a.cosh() - x for a in self.roots]
+        top = self.falls[0] * self.falls[1]
+        self.scale = top.real
+
+    def over(self, top: list[arb], delay: arb, odd: bool) -> acb:
+        """Σ (jω)^odd top(λ)/(λ n(λ)) e^{−jω delay}."""
+        n0, n1, n2 = self.form
+        x, z = self.x, self.z
+        rest = top[1] - top[0] * n1 / n0, top[2] - top[0] * n2 / n0
+        still = (1 - z if odd else (1 - delay) + delay * z) / (2 * (1 - x))
+        total = top[0] / n0 * still
+        for a, square, other, fall in zip(
+            self.roots, self.squares, self.squares[::-1], self.falls, strict=True
+        ):
+            share = (rest[0] - rest[1] * square) / (n2 * (other - square))
+            early, late = a * (1 - delay), a * delay
+            wave = early.cosh() - z * late.cosh() if odd else (early.sinh() + z * late.sinh()) / a
+            total += share * wave / (2 * fall)
+        return total
+
+
+def _at(coefficients: tuple[int, ...], z: acb) -> acb:
+    total = acb(0)
+    for c in reversed(coefficients):
+        total = total * z + c
+    return total
+
+
+def _size(value: acb) -> arb:
+    return value.real * value.real + value.imag * value.imag
+
+
+def _exponent(value: Fraction) -> int:
+    return abs(value.numerator).bit_length() - value.denominator.bit_length()
+
+
+def _times_power(value: Fraction, shift: int) -> int:
+    return round(value * (1 << shift)) if shift >= 0 else round(value / (1 << -shift))
+
+
+def _decays(p: list[arb]) -> bool | None:
+    """All roots of Σ p_i z^(n−i) inside the unit circle, by Schur and Cohn; None where that is open."""
+    while len(p) > 1:
+        first, last = p[0], p[-1]
+        if not abs(last) < abs(first):
+            return False if abs(last) > abs(first) else None
+        p = [first * x - last * y for x, y in zip(p[:-1], p[:0:-1], strict=True)]
+        p = [c / p[0] for c in p]
+    return True
+
+
+@dataclass(frozen=True)
+class ElasticProof:
+    """The polynomial that lies below the criterion, ascending in cos θ, and that it is ≥ 0."""
+
+    below: tuple[Fraction, ...]
+    positivity: Positivity
+
+
+@dataclass(frozen=True)
+class ElasticRefutation:
+    """Why there is none.
+
+    "criterion": it is < 0 at this cosine; "unstable": while the hand's side is held; "negative static
+    stiffness"; or "too close to zero" to tell.
+    """
+
+    reason: str
+    cosine: Fraction | None = None
+
+
+@lru_cache(maxsize=256)
+def decide_elastic(elastic: Elastic) -> ElasticProof | ElasticRefutation:
+    """Decide the criterion, stability and static stiffness."""
+    at_one = sum(elastic.loop.numerator)
+    polynomial, shift = elastic.polynomial
+    try:
+        sign = prove_nonnegative(polynomial)
+    except TooClose:
+        return ElasticRefutation("too close to zero")
+    if isinstance(sign, Fraction):
+        with precision(elastic.bits):
+            below = elastic.value(sign) < 0
+        return ElasticRefutation("criterion", sign) if below else ElasticRefutation("too close to zero")
+    if not elastic.held:
+        return ElasticRefutation("too close to zero" if elastic.held is None else "unstable")
+    if at_one < 0:
+        return ElasticRefutation("negative static stiffness")
+    scale = Fraction(2) ** -shift
+    return ElasticProof(tuple(Fraction(int(c)) * scale for c in polynomial.coeffs()), sign)
