@@ -63,6 +63,7 @@ if True:  # found as ever; offered where they belong, such as gains.read_gains
     from zwidth.data.gains import check_gains as check_gains
     from zwidth.data.gains import read_gains as read_gains
     from zwidth.data.logs import Log as Log
+    from zwidth.model.device import Transmission as Transmission
     from zwidth.model.device import amplifier as amplifiers
     from zwidth.model.rendering import FrictionCompensation as FrictionCompensation
     from zwidth.passivity.certificate import Certificate as Certificate

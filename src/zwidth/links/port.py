@@ -15,7 +15,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.links import memory
-from zwidth.model.device import Device
+from zwidth.model.device import Device, require_rigid
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Parametric, parameters_of
@@ -71,6 +71,7 @@ class Port(Parametric):
         super().__post_init__()
         if not isinstance(self.device, Device):
             raise InputError(f"device is a Device, got {type(self.device).__name__}")
+        require_rigid(self.device, "a port")
         self.complete()
         self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
         self._keep(run=secrets.randbelow(2**64 - 1) + 1, _other=_Other())

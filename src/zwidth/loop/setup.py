@@ -17,7 +17,7 @@ from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, P
 from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
-from zwidth.model.device.device import Device
+from zwidth.model.device.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
@@ -245,6 +245,7 @@ def frame_of(
         return found
     if not isinstance(device, Device):
         raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
+    require_rigid(device, "a simulated touch")
     if not isinstance(operator, Operator):
         raise InputError(
             f"operator is a hand, such as zwidth.operators.Finger(), got {type(operator).__name__}"

@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.model.device.device import require_rigid
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.answered import answered, data_of, known
 from zwidth.quantity.exact import Interval, ends
@@ -218,6 +219,7 @@ def _hands_document(hands: Hands, motion: str) -> dict[str, Any]:
 
 def scope_of(device: Device, environment: Environment) -> Scope:
     """What is asked of a loop, before anything is found: every hand, contact as the law has it."""
+    require_rigid(device, "this claim")
     certain = device.is_certain
     friction, damping = ends(device.coulomb_friction)[0], ends(device.damping)[0]
     uncertain = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}

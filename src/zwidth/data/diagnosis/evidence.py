@@ -33,7 +33,7 @@ from zwidth.data.diagnosis.law import Law
 from zwidth.data.diagnosis.recording import Recording
 from zwidth.data.diagnosis.stated import Stated, compare
 from zwidth.data.diagnosis.vibration import Vibration, phasors
-from zwidth.model.device import Device
+from zwidth.model.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
@@ -68,6 +68,7 @@ class Known:
         """The middle of each number of a device."""
         if device is None:
             return cls()
+        require_rigid(device, "a diagnosis")
         return cls(
             mass=_middle(device.mass),
             damping=_middle(device.damping),

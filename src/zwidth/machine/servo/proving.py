@@ -18,7 +18,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import CompiledConnection, Connection, LibraryConnection
-from zwidth.model.device.device import Device
+from zwidth.model.device.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
 from zwidth.passivity.verdict import Verdict
@@ -86,6 +86,7 @@ def check_kinds(device: Device, connection: Connection) -> None:
 
 def least_friction(device: Device) -> Device:
     """The device with the least friction that it may have: the law does not depend on it."""
+    require_rigid(device, "a law on a machine")
     low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
     found = device.replace(stiction=None, **low)
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]

@@ -2,7 +2,17 @@
 
 from zwidth.model.device import catalogue
 from zwidth.model.device.amplifier import ActuatorCheck, actuator_checks
-from zwidth.model.device.device import Device
+from zwidth.model.device.device import Device, require_rigid
 from zwidth.model.device.friction import FrictionCurve, FrictionModel
+from zwidth.model.device.transmission import Transmission
 
-__all__ = ["ActuatorCheck", "Device", "FrictionCurve", "FrictionModel", "actuator_checks", "catalogue"]
+__all__ = [
+    "ActuatorCheck",
+    "Device",
+    "FrictionCurve",
+    "FrictionModel",
+    "Transmission",
+    "actuator_checks",
+    "catalogue",
+    "require_rigid",
+]

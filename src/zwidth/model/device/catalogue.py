@@ -177,7 +177,7 @@ def _arguments(found: Entry, overrides: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _override(found: Entry, key: str, value: Any) -> Any:
-    if key in ("name", "motion"):
+    if key in ("name", "motion", "transmission"):
         return value
     if key not in found.properties:
         near = get_close_matches(key, found.properties, n=1)

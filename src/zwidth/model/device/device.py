@@ -16,6 +16,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from zwidth.errors import InputError
+from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import (
@@ -34,6 +35,7 @@ from zwidth.showing import Html, Table, one_line
 Motion = Literal["linear", "rotary"]
 
 _ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
+_OF_A_BODY = ("mass", "damping", "coulomb_friction", "stiction")
 _DIGITS = 6
 """Of a number in a notebook."""
 _ZeroIfUnknown = Reads[Exact | Interval, Given | None]
@@ -79,6 +81,9 @@ class Device(Parametric):
         "linear" (metres, newtons) or "rotary" (radians, newton metres).
     name
         For reports.
+    transmission
+        What gives way between motor and hand, a `Transmission`; mass, damping, friction and stiction are then
+        those on the motor's side. None: motor, encoder and hand move as one.
 
     Raises
     ------
@@ -142,6 +147,7 @@ class Device(Parametric):
     )
     motion: Motion = "linear"
     name: str = "device"
+    transmission: Transmission | None = None
 
     def __init__(
         self,
@@ -162,16 +168,20 @@ class Device(Parametric):
         current_limit: Given | None = None,
         motion: Motion = "linear",
         name: str = "device",
+        transmission: Transmission | None = None,
     ) -> None:
         if motion not in ("linear", "rotary"):
             raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
+        if not (transmission is None or isinstance(transmission, Transmission)):
+            raise InputError(f"transmission is a zwidth.Transmission, got {type(transmission).__name__}")
         everything = locals()
         given: dict[str, Given | None] = {key: everything[key] for key in parameters_of(Device)}
         given["sample_period"] = _period(sample_period, rate)
         assumed = tuple(key for key in _ZERO_IF_UNKNOWN if given[key] is None)
         given.update(dict.fromkeys(assumed, 0))
         read = {key: _read(key, value, motion) for key, value in given.items()}
-        self._keep(**read, _assumed=assumed, motion=motion, name=one_line(str(name)))
+        label = one_line(str(name))
+        self._keep(**read, _assumed=assumed, motion=motion, name=label, transmission=transmission)
         _check_stiction(self)
 
     @property
@@ -192,7 +202,13 @@ class Device(Parametric):
     @property
     def is_certain(self) -> bool:
         """True when no parameter is an interval."""
-        return not any(isinstance(getattr(self, f.name), Interval) for f in fields(self))
+        flexible = self.transmission is not None and not self.transmission.is_certain
+        return not (flexible or any(isinstance(value, Interval) for value in self.parameters().values()))
+
+    @property
+    def motor_side(self) -> Device:
+        """The same device without its transmission: what the actuator moves at once."""
+        return self if self.transmission is None else self.replace(transmission=None)
 
     def replace(self, **changes: Any) -> Device:
         """The same device with some arguments changed (`rate` counts as one)."""
@@ -213,8 +229,11 @@ class Device(Parametric):
         Raises
         ------
         InputError
-            If the parameter is an interval or unknown.
+            If the parameter is an interval or unknown; or if it is that of one of two bodies, and it was not
+            asked of `motor_side`.
         """
+        if key in _OF_A_BODY:  # whoever asks for one number, and does not say of which, counts one body
+            require_rigid(self, f"a single {in_words(key)}")
         value = getattr(self, key)
         if not isinstance(value, Exact):
             given = "it is unknown" if value is None else f"it is the interval {value}"
@@ -237,12 +256,35 @@ class Device(Parametric):
     def __repr__(self) -> str:
         inside = ", ".join(f"{k}={_shown(v)}" for k, v in self.parameters().items())
         extra = f", motion={self.motion!r}" if self.motion != "linear" else ""
+        extra += f", transmission={self.transmission!r}" if self.transmission is not None else ""
         return f"Device({inside}{extra}, name={self.name!r})"
 
     def _repr_html_(self) -> Html:
         known = self.parameters().items()
         rows = [(GLOSSARY[k].symbol, in_words(k), shown(v, self.unit(k), _DIGITS)) for k, v in known]
+        if self.transmission is not None:
+            for k, v in self.transmission.parameters().items():
+                own = parameters_of(Transmission)[k]
+                told = shown(v, own.unit_for(self.motion), _DIGITS)
+                rows.append((own.quantity.symbol, f"transmission: {in_words(k)}", told))
+            rows.append(("", "encoder at the", self.transmission.encoder))
         return Table(caption=self.name, rows=rows).html
+
+
+def require_rigid(device: Device, what: str) -> None:
+    """Refuse a device with a transmission; `what` counts motor, encoder and hand as one.
+
+    Raises
+    ------
+    InputError
+        If the device has one: what to give in its place.
+    """
+    if device.transmission is not None:
+        raise InputError(
+            f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
+            "them; zwidth check and limit know a transmission; here give the device without it, "
+            "device.motor_side, whose proof holds where nothing gives way"
+        )
 
 
 def _shown(value: Exact | Interval) -> str:

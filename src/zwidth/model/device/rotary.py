@@ -129,6 +129,11 @@ def at_handle(device: Device, radius: Exact | Interval) -> Device:
         value = getattr(device, key)
         if value is not None and key not in device.assumed:
             changes[key] = _scaled(value, radius, power)
+    if device.transmission is not None:
+        known = device.transmission.parameters().items()
+        powers = {key: -1 if key.endswith("friction") else -2 for key, _ in known}
+        there = {key: _scaled(value, radius, powers[key]) for key, value in known}
+        changes["transmission"] = device.transmission.replace(**there)
     return device.replace(**changes)
 
 

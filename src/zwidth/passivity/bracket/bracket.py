@@ -9,7 +9,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.model.device.device import Device
+from zwidth.model.device.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import Result, evidence_of
@@ -170,6 +170,7 @@ class Parameter(NamedTuple):
 
 def parameter_of(device: Device, environment: Environment, name: str) -> Parameter:
     """The parameter that is asked for, one of a rendered environment included; the laws follow it."""
+    require_rigid(device, "this search")
     owner, _, key = name.rpartition(".")
     met = environment.met
     in_environment = {f.name for f in fields(met)} - {"exponent"}  # it changes the unit of K

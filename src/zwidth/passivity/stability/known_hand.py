@@ -16,7 +16,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import Motion
-from zwidth.model.device import Device
+from zwidth.model.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment, RationalFunction
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
@@ -170,6 +170,7 @@ def _checked(motion: Motion, transfer: RationalFunction, units: str) -> tuple[Fo
 
 def motion_of(device: Device, hand: HandImpedance) -> Motion:
     """Device and hand together."""
+    require_rigid(device, "stability with a known hand")
     if device.mass is None:
         raise InputError(
             "stability with a known hand depends on the mass of the device, and it is unknown; give mass"

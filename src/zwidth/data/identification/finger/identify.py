@@ -55,7 +55,7 @@ from zwidth.data.identification.finger.means import (
 )
 from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
-from zwidth.model.device.device import Device
+from zwidth.model.device.device import Device, require_rigid
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
 
@@ -291,6 +291,8 @@ def _checked(
             f"{log.source} has no force of the hand: device and finger move together, and only a device with "
             "a mass tells them apart; identify it first, and give it as device"
         )
+    if device is not None:
+        require_rigid(device, "what a finger is told apart from")
     if device is not None and device.motion != log.motion:
         raise InputError(
             f"{log.source} is {log.motion} and the device {device.motion}: units do not match; "

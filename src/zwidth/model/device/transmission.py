@@ -1,0 +1,103 @@
+"""Between motor and hand: a cable, a belt or a gear that gives way.
+
+Two bodies in the place of one, x₁ of the motor and x₂ of the handle, joined by a spring k and a damper c:
+
+    m₁ ẍ₁ = −f_a − b₁ ẋ₁ − f_c1 sgn ẋ₁ + k (x₂ − x₁) + c (ẋ₂ − ẋ₁)
+    m₂ ẍ₂ =  f_h − b₂ ẋ₂ − f_c2 sgn ẋ₂ − k (x₂ − x₁) − c (ẋ₂ − ẋ₁)
+
+m₁, b₁ and f_c1 are those of the device itself, on whose side the actuator is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.parameter import Parametric, Uncertain, UncertainOrNone, parameter, parameters_of, word
+
+
+def _q(name: str, symbol: str, like: str, meaning: str) -> Quantity:
+    return GLOSSARY[like]._replace(name=name, symbol=symbol, meaning=meaning)
+
+
+_FRICTION = "negative friction would itself generate energy"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transmission(Parametric):
+    """A spring and a damper between motor and handle, and what moves on the handle's side.
+
+    ``m₁ ẍ₁ = −f_a − b₁ ẋ₁ − f_c1 sgn ẋ₁ + k (x₂ − x₁) + c (ẋ₂ − ẋ₁)`` and
+    ``m₂ ẍ₂ = f_h − b₂ ẋ₂ − f_c2 sgn ẋ₂ − k (x₂ − x₁) − c (ẋ₂ − ẋ₁)``: mass, damping and friction of
+    the `Device` are m₁, b₁ and f_c1, those of the motor's side.  Every number may be an `Interval` (or
+    a pair of ends), and a text may carry a unit; the units are those of the device's motion.
+
+    Parameters
+    ----------
+    stiffness
+        k > 0 [N/m; N·m/rad]; None where unknown.
+    damping
+        c inside it, ≥ 0 [N·s/m; N·m·s/rad].
+    handle_mass
+        m₂ > 0 [kg; kg·m²]; None where unknown. No criterion depends on it: only a simulated motion needs it.
+    handle_damping
+        b₂ ≥ 0 [N·s/m; N·m·s/rad].
+    handle_coulomb_friction
+        f_c2 ≥ 0 [N; N·m].
+    encoder
+        "motor" or "handle": which of the two it reads, x₁ or x₂.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, or outside its bound.
+    """
+
+    stiffness: UncertainOrNone = parameter(
+        _q("stiffness", "k", "stiffness", "stiffness of cable, belt or gear"),
+        None,
+        bound="> 0",
+        why="it pulls the handle after the motor; leave it out if unknown",
+    )
+    damping: Uncertain = parameter(
+        _q("damping", "c", "damping", "viscous friction inside cable, belt or gear"),
+        0,
+        bound="≥ 0",
+        why=_FRICTION,
+    )
+    handle_mass: UncertainOrNone = parameter(
+        _q("handle_mass", "m_2", "mass", "inertia on the handle's side; no criterion depends on it"),
+        None,
+        bound="> 0",
+        why="a handle has inertia; leave it out if unknown",
+    )
+    handle_damping: Uncertain = parameter(
+        _q("handle_damping", "b_2", "damping", "viscous friction on the handle's side"),
+        0,
+        bound="≥ 0",
+        why=_FRICTION,
+    )
+    handle_coulomb_friction: Uncertain = parameter(
+        _q("handle_coulomb_friction", "f_c2", "coulomb_friction", "dry friction on the handle's side"),
+        0,
+        bound="≥ 0",
+        why=_FRICTION,
+    )
+    encoder: Literal["motor", "handle"] = word("motor", "handle")
+
+    @property
+    def is_certain(self) -> bool:
+        """True when no parameter is an interval."""
+        return not any(isinstance(value, Interval) for value in self.parameters().values())
+
+    def replace(self, **changes: Any) -> Transmission:
+        """The same with some arguments changed."""
+        return replace(self, **changes)
+
+    def parameters(self) -> Mapping[str, Exact | Interval]:
+        """The known numbers by name, SI."""
+        known = {name: getattr(self, name) for name in parameters_of(Transmission)}
+        return {name: value for name, value in known.items() if isinstance(value, (Exact, Interval))}
