@@ -134,7 +134,7 @@ KINDS: dict[str, Kind] = {
     "linear": Kind(LINEAR, _proof(linear), _of_every_hand(KEPT)),
     "quantized": Kind(QUANTIZED, _proof(quantized), _of_every_hand(KEPT)),
     "delays": Kind(DELAYS, _proof(delays), _of_every_hand(KEPT)),
-    "transmission": Kind(ELASTIC, _proof(elastic), _of_every_hand(KEPT)),
+    "transmission": Kind(ELASTIC, _proof(elastic), scope.of_a_transmission(PASSIVE)),
     "transmission violation": Kind(
         ELASTIC_VIOLATION, _proof(elastic_violation), _of_every_hand(KEPT, ACTIVE)
     ),

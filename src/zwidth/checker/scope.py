@@ -43,6 +43,8 @@ class Scope(NamedTuple):
         Whether the actuator's limit, and its converter's steps, are in the proof.
     fed_with
         What a law with a memory must be fed with for the proof to hold, "position" or "penetration"; or "".
+    transmission
+        "as given": motor and hand are joined by a spring and a damper of these numbers, and by no others.
     """
 
     shows: str
@@ -52,6 +54,7 @@ class Scope(NamedTuple):
     force_limit: bool = False
     force_steps: bool = False
     fed_with: FedWith = ""
+    transmission: str = ""
 
 
 def weakest(scopes: Sequence[Scope]) -> Scope | None:
@@ -68,6 +71,7 @@ def weakest(scopes: Sequence[Scope]) -> Scope | None:
         force_limit=all(s.force_limit for s in scopes),
         force_steps=all(s.force_steps for s in scopes),
         fed_with=next(iter(fed), ""),
+        transmission=next((s.transmission for s in scopes if s.transmission), ""),
     )
 
 
@@ -84,6 +88,11 @@ def of_every_hand(touched: Contact, shows: str = PASSIVE) -> Callable[[Read], Sc
     return lambda told: Scope(
         shows, contact=touched if told.loop.unilateral else BOTH_SIDES, encoder=_encoder(told)
     )
+
+
+def of_a_transmission(shows: str) -> Callable[[Read], Scope]:
+    """A hand that stays inside, behind this transmission and no other."""
+    return lambda told: of_every_hand(KEPT, shows)(told)._replace(transmission="as given")
 
 
 def of_a_fed_law(told: Read) -> Scope:

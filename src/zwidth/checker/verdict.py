@@ -131,6 +131,8 @@ def _misfit(stated: Statement, name: str, evidence: Mapping[str, Any], covered: 
         return misfit
     if shows in (INDEX, NO_INDEX):
         return _misfit_of_a_port(evidence, shows, said)
+    if covered.transmission and stated.scope and stated.scope.get("transmission") != covered.transmission:
+        return "is of one transmission, of the numbers in it"
     needed = _SHOWN_BY.get(str(said))
     if (shows not in (_BETTER if name == "certificate" else _WORSE)) if needed is None else needed != shows:
         return {

@@ -79,6 +79,7 @@ SHAPES: dict[str, Shape] = {
         told=(
             *_LOOP, "decided_by", "mode", "max_stiffness", "max_gain", "critical_frequency",
             "admissible_speed", "margins", "actuator", "real_hand", "ranges",
+            "max_stiffness_any_transmission", "max_stiffness_viscous", "resonance",
         ),
         inside={
             "worst_hand": ("one", "zwidth worst hand 1"),

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING, Any, overload
 
@@ -136,6 +137,11 @@ def _check_device(
     progress: Callable[[int], None] | None = None,
 ) -> Verdict:
     law = _as_law(device, environment)
+    if device.transmission is not None:
+        from zwidth.passivity.transmission import check_transmission  # few devices have one
+
+        judged = partial(_check_device, environment=law, contact=contact, iterate=iterate, progress=progress)
+        return check_transmission(device, law, as_contact(contact), judged)
     if not law.has_transfer_function:
         from zwidth.passivity.other_laws import check_other  # few loops have such a law
 

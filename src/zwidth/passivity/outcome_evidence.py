@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
     from zwidth.passivity.storage import AvailableStorage
     from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.transmission import ElasticViolation
 
 
 Finding = Literal[
@@ -60,7 +61,7 @@ class Found(PassivityAnswer):
     device: Device = known("the one decided: of the worst corner where intervals were given")
     environment: Environment = known("likewise")
     certificate: Certificate | None = known('the proof of "passive"; else None', default=None)
-    violation: Violation | EndlessPull | None = known(
+    violation: Violation | EndlessPull | ElasticViolation | None = known(
         'what of the linear criterion is violated, a proof of "active"; or so at the worst corner of an '
         "interval; None for a loop that is active by its encoder, or by contact made and broken",
         default=None,

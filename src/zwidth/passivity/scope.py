@@ -38,8 +38,8 @@ Sampling = Literal["constant", "any"]
 Torque = Literal["", "follows the arm", "follows the readings", "held"]
 """Of an arm, within a period: it is always that of the arm, or of its readings; or computed once."""
 
-Transmission = Literal["rigid", ""]
-"""Motor, encoder and hand move as one, no cable, belt or gear gives way between them; "" without a device."""
+Transmission = Literal["rigid", "any", "as given", ""]
+"""Motor, encoder and hand move as one; whatever stands behind the motor; one with these numbers; or none."""
 
 FedWith = Literal["position", "penetration", ""]
 """Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
@@ -125,8 +125,9 @@ class Scope:
         "of an arm in pose, its moment likewise", unit="N*m", optional=True, default=None
     )
     transmission: Transmission = answered(
-        '`"rigid"`: motor, encoder and hand move as one, no cable, belt or gear gives way between them; no '
-        "claim counts what gives way there. Missing where there is no device",
+        '`"rigid"`: motor, encoder and hand move as one, no cable, belt or gear gives way between them; '
+        '`"any"`: the friction of the motor\'s side pays, whatever stands behind it; `"as given"`. Missing '
+        "where there is no device",
         optional=True,
         default="rigid",
     )

@@ -8,7 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from zwidth.passivity.scope import Contact, Encoder, Hands, Law, Outcome, Sampling, Scope, Torque
+from zwidth.passivity.scope import (
+    Contact,
+    Encoder,
+    Hands,
+    Law,
+    Outcome,
+    Sampling,
+    Scope,
+    Torque,
+    Transmission,
+)
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
@@ -98,6 +108,22 @@ _LAW: dict[Law, _Said] = {
 }
 AS_ONE = "motor, encoder and hand move as one"
 TRANSMISSION = f"{AS_ONE}: no cable, belt or gear gives way between them"
+_TRANSMISSION: dict[Transmission, _Said] = {
+    "": _Said("", ""),
+    "rigid": _Said(TRANSMISSION, AS_ONE),
+    "any": _Said(
+        "friction of the motor's side pays for all, with what damping inside the transmission adds "
+        "whatever the hand does: however cable, belt or gear give way, and whatever they move",
+        "any stiffness between motor and hand",
+    ),
+    "as given": _Said(
+        "motor and hand are joined by one spring and one damper, of the numbers that were given",
+        "a transmission of the numbers given",
+    ),
+}
+_HELD: dict[Transmission, str] = {
+    "": "the device", "rigid": "the device", "any": "the device", "as given": "the hand's side"
+}  # fmt: skip
 _ENCODER: dict[Encoder, _Said] = {
     "ideal": _Said("ideal position sensor: no quantization", "ideal position sensor"),
     "counted": _Said(
@@ -183,10 +209,10 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
     if scope.hands.impedance is None:
         speed = "speed and force" if scope.hands.speed is None or active else "force"
         limit = "limits on" if " and " in speed else "limit on"
-        yield f"a hand without {limit} {speed}; the mass of the device plays no part"
+        yield f"a hand without {limit} {speed}; the mass of {_HELD[scope.transmission]} plays no part"
     yield _actuator(scope)
     if scope.transmission:
-        yield TRANSMISSION
+        yield _TRANSMISSION[scope.transmission].in_full
     if scope.torque:
         yield _TORQUE[scope.torque].in_full
     if scope.largest_force is not None:
@@ -315,7 +341,7 @@ def _short_parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
         yield from _short_hands(scope, active)
     yield _short_losses(scope)
     yield _short_actuator(scope)
-    yield AS_ONE if scope.transmission else ""
+    yield _TRANSMISSION[scope.transmission].in_short
     yield _TORQUE[scope.torque].in_short
     yield _short_forces(scope)
     yield _SAMPLING[scope.sampling].in_short

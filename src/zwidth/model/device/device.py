@@ -283,7 +283,7 @@ def require_rigid(device: Device, what: str) -> None:
         raise InputError(
             f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
             "them; zwidth check and limit know a transmission; here give the device without it, "
-            "device.motor_side, whose proof holds where nothing gives way"
+            "device.motor_side"
         )
 
 

@@ -9,7 +9,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.model.device.device import Device, require_rigid
+from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import Result, evidence_of
@@ -170,7 +170,6 @@ class Parameter(NamedTuple):
 
 def parameter_of(device: Device, environment: Environment, name: str) -> Parameter:
     """The parameter that is asked for, one of a rendered environment included; the laws follow it."""
-    require_rigid(device, "this search")
     owner, _, key = name.rpartition(".")
     met = environment.met
     in_environment = {f.name for f in fields(met)} - {"exponent"}  # it changes the unit of K
@@ -181,6 +180,8 @@ def parameter_of(device: Device, environment: Environment, name: str) -> Paramet
         return _of_environment(device, environment, key)
     if owner in ("", "device") and key in in_device:
         return _of_device(device, environment, key)
+    if owner == "transmission" and device.transmission is not None:
+        return _of_transmission(device, environment, key)
     gain = "" if met.scaled(Fraction(1)) is None else ", and gain, a factor on its force"
     raise InputError(
         f"no parameter {name!r}: the environment has {', '.join(sorted(in_environment))}{gain}; the device "
@@ -214,13 +215,29 @@ def _of_environment(device: Device, environment: Environment, key: str) -> Param
 
 
 def _of_device(device: Device, environment: Environment, key: str) -> Parameter:
-    known = 1 / device.exact("sample_period") if key == "rate" else device.exact(key)
+    motor = device.motor_side
+    known = 1 / motor.exact("sample_period") if key == "rate" else motor.exact(key)
 
     def change(value: Exact) -> Loop:
         return device.replace(**{key: value}), environment
 
     now = float(known) or _guess(device, key)
     return _parameter(f"device.{key}", device.unit(key), now, change)
+
+
+def _of_transmission(device: Device, environment: Environment, key: str) -> Parameter:
+    given = device.transmission
+    assert given is not None
+    own = given.parameters()
+    now = own.get(key)
+    if not isinstance(now, Exact):
+        raise InputError(f"transmission.{key} is no number that is known; it has {', '.join(own)}")
+
+    def change(value: Exact) -> Loop:
+        return device.replace(transmission=given.replace(**{key: value})), environment
+
+    unit = device.unit("stiffness" if key == "stiffness" else "damping")
+    return Parameter(f"transmission.{key}", unit, float(now) or 1.0, change, True)
 
 
 def _parameter(name: str, unit: str, now: float, change: Callable[[Exact], Loop]) -> Parameter:
@@ -235,6 +252,7 @@ def more_is_safer(name: str) -> bool:
 
 def _guess(device: Device, key: str) -> float:
     """A first value of a parameter that is 0, from the device's other numbers."""
+    device = device.motor_side
     b, f = device.exact("damping"), device.exact("coulomb_friction")
     t, step = device.exact("sample_period"), device.exact("resolution")
     sizes = {"stiffness": 2 * b / t, "damping": b, "coulomb_friction": f}

@@ -101,7 +101,7 @@ def passive_limit(
     most = checked_effort(effort)
     time_limit(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
-    if not iterate:
+    if not iterate or device.transmission is not None:  # of two bodies closed forms alone know
         return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted)
     ideal = ends(device.resolution)[1] == 0
     in_a_chain = bool(laws_of(law))

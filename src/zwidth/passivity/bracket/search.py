@@ -78,7 +78,7 @@ class Search:
             if value not in verdicts:
                 self.count()
                 device, law = self.parameter.change(value)
-                closed = every_law or is_stepped(law)
+                closed = every_law or is_stepped(law) or device.transmission is not None
                 try:
                     verdicts[value] = (
                         check(device, law, iterate=False) if closed else check_by_closed_forms(device, law)

@@ -1,0 +1,332 @@
+"""The verdict on a device whose motor and hand move apart, on a cable, a belt or a gear.
+
+With the encoder at the motor, what the hand puts in is at least what the actuator takes and what rubs, and of
+viscous friction that is, whatever the hand does with its own side,
+
+    b₁ v₁² + c (v₁ − v₂)² + b₂ v₂² ≥ (b₁ + c b₂/(c + b₂)) v₁² :
+
+a loop that is passive with this damping and the Coulomb friction of the motor's side alone is passive for
+every stiffness and every mass behind the motor, of any law and however contact is made.  Where that is not
+enough, a linear law on a transmission that is known is decided by the criterion of `linear.transmission`.
+A violation holds whatever Coulomb friction and encoder are: a large motion outweighs both.  A proof is of
+viscous friction and an ideal encoder: Coulomb friction on the motor changes how it moves, and what that does
+to a hand behind a cable is not proved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import inf, pi, sqrt
+from typing import Any
+
+from zwidth.model.device import Device, Transmission
+from zwidth.model.environment.environment import Environment
+from zwidth.passivity import parameter_limits
+from zwidth.passivity.advice import Advice
+from zwidth.passivity.certificate import FORMAT, Certificate, positivity_document
+from zwidth.passivity.linear.boundary import COARSE, largest_holding
+from zwidth.passivity.linear.criterion import frequency
+from zwidth.passivity.linear.loop import linear_loop
+from zwidth.passivity.linear.transmission import Elastic, ElasticProof, ElasticRefutation, decide_elastic
+from zwidth.passivity.result import Evidence
+from zwidth.passivity.scope import Contact, scope_of, unit_key
+from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.witness.violation import FORMAT as VIOLATION
+from zwidth.passivity.witness.witness import Setting
+from zwidth.quantity.answered import answers, known
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import at_most, exact_text, in_unit
+
+Judge = Callable[[Device], Verdict]
+
+_TOO_CLOSE = "The criterion of motor, transmission and hand is too close to zero to tell its sign."
+_UNCONFIRMED = "A proof was found, but the independent checker did not confirm it within its bounds."
+_IF_IDEAL = (
+    "With viscous friction alone and an ideal encoder this loop is passive. With the Coulomb friction of the "
+    "motor's side, or the encoder's steps, it is proved only as far as what the motor feels of friction "
+    "whatever the hand does pays for all."
+)
+
+
+@dataclass(frozen=True, repr=False)
+class ElasticViolation(Evidence):
+    """A proof that a hand can take any amount of energy out of a loop with a transmission."""
+
+    elastic: Elastic
+    setting: Setting
+    refutation: ElasticRefutation
+    witness = None
+
+    @property
+    def frequency(self) -> float | None:
+        """A frequency at which the criterion is violated [Hz]; None where something else is."""
+        cosine = self.refutation.cosine
+        return None if cosine is None else frequency(cosine, self.elastic.loop.period)
+
+    @property
+    def contact(self) -> Contact:
+        """A hand that stays inside finds it; or there is no surface."""
+        return "kept" if self.setting.unilateral else "both sides"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The violation as plain data."""
+        cosine = self.refutation.cosine
+        where = {} if cosine is None else {"cosine": exact_text(cosine)}
+        return {
+            "format": VIOLATION,
+            "kind": "transmission violation",
+            **_document(self.elastic, self.setting),
+            "proof": {"kind": self.refutation.reason, **where},
+        }
+
+    def describe(self) -> str:
+        """What is violated, in words."""
+        if self.frequency is not None:
+            return (
+                f"at {self.frequency:.6g} Hz the linear criterion of motor, transmission and hand is violated"
+            )
+        if self.refutation.reason == "unstable":
+            return "while the hand holds still, the motor swings more and more on its transmission"
+        return "pressed slowly, the law pulls the hand in"
+
+
+def _document(elastic: Elastic, setting: Setting) -> dict[str, Any]:
+    """The loop and the transmission, exact."""
+    numbers = {
+        "mass": elastic.mass,
+        "stiffness": elastic.stiffness,
+        "damping": elastic.damping,
+        "handle_damping": elastic.handle_damping,
+    }
+    unit = {name: unit_key(name.removeprefix("handle_"), setting.motion) for name in numbers}
+    keys = {name: f"handle_{unit[name]}" if name.startswith("handle_") else unit[name] for name in numbers}
+    given = {keys[name]: exact_text(value) for name, value in numbers.items()}
+    encoder = "handle" if elastic.at_handle else "motor"
+    return {"loop": setting.loop_document(), "transmission": {**given, "encoder": encoder}}
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class TransmissionVerdict(Verdict):
+    """A verdict on a device with a transmission."""
+
+    side: Verdict | None = known(
+        "the verdict on the motor's side alone; None where it says nothing", default=None
+    )
+    elastic: Elastic | None = known("the loop with its transmission, where it is known", default=None)
+    open: str = known("why it is undecided, in a sentence", default="")
+
+    @property
+    def claim(self) -> str:
+        """The verdict in a sentence or two."""
+        return self.open if self.outcome == "undecided" else super().claim
+
+    @property
+    @answers()
+    def decided_by(self) -> str:
+        """The road on which the outcome was found."""
+        if self.outcome == "undecided":
+            return "nothing"
+        if self.scope.transmission == "any" and self.side is not None:
+            return f"{self.side.decided_by}, by the friction that the motor feels whatever the hand does"
+        return "the linear criterion of motor, transmission and hand"
+
+    @property
+    def _exactly(self) -> bool:
+        """True where the criterion of motor, transmission and hand says all: nothing rubs, nothing steps."""
+        return self.elastic is not None and is_ideal(self.device)
+
+    @cached_property
+    @answers(
+        "largest stiffness that is passive whatever stiffness and mass stand behind the motor; null if none "
+        "is, or that is not known",
+        quantity="stiffness",
+    )
+    def max_stiffness_any_transmission(self) -> float | None:
+        """Largest K for every stiffness between motor and hand [N/m; N·m/rad]."""
+        found: float | None = getattr(self.side, "max_stiffness", None)
+        return found
+
+    @cached_property
+    @answers(
+        "largest passive stiffness with this transmission, where friction is viscous alone and the encoder "
+        "ideal; null if none is, or the transmission is not known",
+        quantity="stiffness",
+    )
+    def max_stiffness_viscous(self) -> float | None:
+        """Largest K by the criterion of motor, transmission and hand [N/m; N·m/rad]."""
+        if self.elastic is None or not parameter_limits.has_stiffness(self.environment):
+            return None
+        return _largest(self.device, self.environment)
+
+    @property
+    @answers("largest passive stiffness that is proved; null if none is", quantity="stiffness")
+    def max_stiffness(self) -> float | None:
+        """Largest K that is proved [N/m; N·m/rad]."""
+        proved = [self.max_stiffness_any_transmission, self.max_stiffness_viscous if self._exactly else None]
+        return max((k for k in proved if k is not None), default=None)
+
+    @property
+    @answers(
+        "where the motor swings on its transmission while the hand holds still; null where not known",
+        unit="Hz",
+    )
+    def resonance(self) -> float | None:
+        """√(k/m)/2π of the motor's side [Hz]."""
+        if self.elastic is None:
+            return None
+        return sqrt(self.elastic.stiffness / self.elastic.mass) / (2 * pi)
+
+    @property
+    def advice(self) -> tuple[Advice, ...]:
+        """How stiff a law may be."""
+        to, unit = self.max_stiffness, GLOSSARY["stiffness"].unit_for(self.device.motion)
+        if to is None or to == inf or not parameter_limits.has_stiffness(self.environment):
+            return ()
+        now = float(parameter_limits.stiffness_of(self.environment))
+        most = in_unit(at_most(to, unit), unit)
+        if self.is_proved:
+            text = f"stiffness may go up to {most} (now {in_unit(now, unit)})"
+            return (Advice("stiffness", now, to, unit, "slack", text),)
+        text = f"lower the stiffness from {in_unit(now, unit)} to {most}"
+        return (Advice("stiffness", now, to, unit, "change", text),)
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        unit = GLOSSARY["stiffness"].unit_for(self.device.motion)
+        rows = [("decided by", self.decided_by)]
+        if self.max_stiffness_any_transmission is not None:
+            most = in_unit(at_most(self.max_stiffness_any_transmission, unit), unit)
+            rows.append(("largest stiffness, however it gives way", most))
+        if self.max_stiffness_viscous is not None:
+            own = "this transmission" if self._exactly else "this one, if friction were viscous alone"
+            most = in_unit(at_most(self.max_stiffness_viscous, unit), unit)
+            rows.append((f"largest stiffness, {own}", most))
+        if self.resonance is not None:
+            rows.append(("the motor swings on it at", in_unit(self.resonance, "Hz")))
+        return rows
+
+
+def is_ideal(device: Device) -> bool:
+    """True where the motor's side has no Coulomb friction and the encoder no steps."""
+    return ends(device.coulomb_friction)[1] == ends(device.resolution)[1] == 0
+
+
+def seen_at_motor(device: Device) -> Device:
+    """The motor's side with the damping that is there whatever the hand does: b₁ + c b₂/(c + b₂)."""
+    given, motor = device.transmission, device.motor_side
+    assert given is not None
+    sums = [
+        b + (c * h / (c + h) if c else c)
+        for b, c, h in zip(*map(ends, (motor.damping, given.damping, given.handle_damping)), strict=True)
+    ]
+    return motor.replace(damping=Exact(sums[0]) if sums[0] == sums[1] else Interval(*sums))
+
+
+def check_transmission(device: Device, law: Environment, asked: Contact, judge: Judge) -> TransmissionVerdict:
+    """Decide a device with a transmission; `judge` has the verdict on a device without one."""
+    given = device.transmission
+    assert given is not None
+    side = judge(seen_at_motor(device)) if given.encoder == "motor" else None
+    if side is not None and side.outcome not in ("active", "undecided"):
+        scope = side.scope.replace(transmission="any")
+        return TransmissionVerdict(
+            side.outcome, scope, device, law, side.certificate,
+            available_storage=side.available_storage, at_limit=side.at_limit, theorem=side.theorem, side=side,
+            elastic=elastic_of(device, law),
+        )  # fmt: skip
+    scope = scope_of(device.motor_side, law).replace(transmission="as given")
+    elastic = elastic_of(device, law)
+    found = TransmissionVerdict("undecided", scope, device, law, side=side, elastic=elastic)
+    if elastic is None:
+        return replace(found, open=_unknown(given, device, law))
+    decision = decide_elastic(elastic)
+    setting = _setting(device, law, elastic)
+    if isinstance(decision, ElasticRefutation):
+        violation = ElasticViolation(elastic, setting, decision)
+        if decision.reason == "too close to zero" or not violation.verify():
+            return replace(found, open=_TOO_CLOSE)
+        scope = scope.replace(contact=violation.contact)
+        return TransmissionVerdict(
+            "active", scope, device, law, violation=violation, side=side, elastic=elastic
+        )
+    if not is_ideal(device):
+        return replace(found, open=_IF_IDEAL)
+    certificate = Certificate((_proof(elastic, setting, decision),))
+    covered = certificate.covered()
+    if covered is None or covered.shows != "passive":
+        return replace(found, open=_UNCONFIRMED)
+    in_contact = covered.contact == "kept" != asked
+    return TransmissionVerdict(
+        "passive in contact" if in_contact else "passive",
+        scope.replace(contact=covered.contact), device, law, certificate, side=side, elastic=elastic,
+    )  # fmt: skip
+
+
+def _unknown(given: Transmission, device: Device, law: Environment) -> str:
+    """Why the criterion of motor, transmission and hand cannot be asked."""
+    if not law.has_transfer_function or (law.clamped and not law.spring):
+        why = "of this law, which is not linear inside, a transmission leaves no other proof known"
+    elif not (device.is_certain and law.is_certain):
+        why = "with intervals no more is proved: give single values"
+    elif given.stiffness is None:
+        why = "of a transmission whose stiffness is not known no more is proved: give transmission.stiffness"
+    elif device.mass is None:
+        why = "give the mass of the motor's side, with which it swings on its transmission"
+    else:
+        why = "friction inside the transmission or on the hand's side is needed for more: give it"
+    at_motor = given.encoder == "motor"
+    first = "What the motor feels of friction whatever the hand does is not enough" if at_motor else (
+        "With the encoder on the hand's side the motor's friction alone proves nothing"
+    )  # fmt: skip
+    return f"{first}; {why}."
+
+
+def elastic_of(device: Device, law: Environment) -> Elastic | None:
+    """The loop with its transmission; None where not all of it is known, or the law is not linear."""
+    given = device.transmission
+    if given is None or given.stiffness is None or device.mass is None:
+        return None
+    if not (law.has_transfer_function and device.is_certain and law.is_certain):
+        return None
+    if law.clamped and not law.spring:
+        return None
+    loop = linear_loop(device.motor_side, law)
+    inside, outside = (_certain(value) for value in (given.damping, given.handle_damping))
+    if not (inside + outside and loop.damping + outside):
+        return None
+    at_handle = given.encoder == "handle"
+    mass, stiffness = device.motor_side.exact("mass"), _certain(given.stiffness)
+    return Elastic(loop, mass, stiffness, inside, outside, at_handle)
+
+
+def _certain(value: Any) -> Fraction:
+    assert isinstance(value, Exact)
+    return value.fraction
+
+
+def _setting(device: Device, law: Environment, elastic: Elastic) -> Setting:
+    friction, resolution = (device.motor_side.exact(name) for name in ("coulomb_friction", "resolution"))
+    return Setting(elastic.loop, friction, resolution, law.unilateral, device.motion)
+
+
+def _proof(elastic: Elastic, setting: Setting, proof: ElasticProof) -> dict[str, Any]:
+    below = {
+        "below": [exact_text(c) for c in proof.below],
+        "positivity": positivity_document(proof.positivity),
+    }
+    return {"format": FORMAT, "kind": "transmission", **_document(elastic, setting), "proof": below}
+
+
+def _largest(device: Device, law: Environment) -> float | None:
+    """The largest K that the criterion of motor, transmission and hand allows."""
+
+    def holds(stiffness: Fraction) -> bool:
+        elastic = elastic_of(device, law.replace(stiffness=Exact(stiffness)))
+        return elastic is not None and isinstance(decide_elastic(elastic), ElasticProof)
+
+    now = float(parameter_limits.stiffness_of(law)) or 1.0
+    return largest_holding(holds, now, COARSE)
