@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import pickle
+import shlex
 
 import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.model.specification.write import parsed, written
 
 CABLE = zw.Transmission(
     stiffness="12 N/mm", damping=0.5, handle_mass=(0.03, 0.04), handle_damping="0.09 N*s/m", encoder="handle"
@@ -130,3 +133,110 @@ def test_it_is_never_taken_for_rigid(asked):
     for device in (CERTAIN, CAPSTAN)[: 1 if asked in ("map", "absolute") else 2]:  # those take no interval
         with pytest.raises(zw.InputError, match=r"counts motor, encoder and hand as one.*\.motor_side"):
             REFUSED[asked](device)
+
+
+FILE = """
+[device]
+mass = "30 g"
+damping = "0.06 N*s/m"
+coulomb_friction = "0.1 N"
+resolution = "10 um"
+rate = "1 kHz"
+name = "it"
+
+[device.transmission]
+stiffness = "12 N/mm"
+damping = 0.5
+handle_mass = ["30 g", "0.04 kg"]
+handle_damping = "0.09 N*s/m"
+encoder = "handle"
+"""
+LOOP = f"{FILE}\n[environment]\ntype = 'wall'\nstiffness = 100\n"
+
+
+def test_a_file_says_it_and_is_written_again():
+    assert parsed(LOOP).device == CAPSTAN
+    for device in (CAPSTAN, CERTAIN, CAPSTAN.replace(transmission=zw.Transmission())):
+        assert parsed(written(device, WALL)).device == device
+
+
+def test_a_rotary_file_is_in_its_units():
+    """About the axis as written; with a radius at the handle, as the device is."""
+    text = "[device]\ninertia = 1e-4\ndamping = 1e-3\nrate = 1000\n{}[device.transmission]\n{}\n"
+    wall = "[environment]\ntype = 'wall'\nstiffness = 1"
+    stiff = "stiffness = '5 N*m/rad'\nhandle_coulomb_friction = '0.01 N*m'"
+    turning = parsed(text.format("", stiff) + wall).device
+    assert turning.transmission == zw.Transmission(stiffness=5, handle_coulomb_friction="0.01")
+    handle = parsed(text.format("handle_radius = 0.1\n", stiff) + wall).device
+    assert handle.transmission == zw.Transmission(stiffness=500, handle_coulomb_friction="0.1")
+    with pytest.raises(zw.InputError, match=r"transmission\.stiffness is in N\*m/rad"):
+        parsed(text.format("", "stiffness = '5 N/m'") + wall)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("encoder =", "encodr =", 'a transmission has no "encodr"; did you mean "encoder"'),
+        ("handle_mass =", "mass =", 'a transmission has no "mass"; it may be: damping, encoder, '),
+        ('"12 N/mm"', "0", "transmission.stiffness must be > 0 N/m, got 0"),
+        ('"12 N/mm"', '"12 mm"', "transmission.stiffness is in N/m"),
+        ('"handle"', '"hand"', 'transmission.encoder: there is no "hand"'),
+        ("[device.transmission]", "transmission = 3\n[environment]", "transmission is a table"),
+        ("[device.transmission]", "[device.transmision]", 'did you mean "transmission"'),
+    ],
+)
+def test_what_a_file_cannot_mean(old, new, said):
+    """Each is refused by its name, and where it stands."""
+    with pytest.raises(zw.InputError) as error:
+        parsed((FILE if "[environment]" in new else LOOP).replace(old, new))
+    assert str(error.value).startswith("specification: [device]: ")
+    assert said in str(error.value)
+
+
+@pytest.fixture
+def err(capsys, tmp_path, monkeypatch):
+    """Runs a line as it is typed behind `zwidth`, beside the file it.toml, and gives its message."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "it.toml").write_text(FILE, encoding="utf-8")
+
+    def run(line: str) -> str:
+        assert main(shlex.split(line)) == 2
+        return " ".join(capsys.readouterr().err.split())
+
+    return run
+
+
+def test_options_take_the_place_of_the_file(err):
+    """An option is read in the unit of the device, and its message names it."""
+    said = err("check it.toml --stiffness 100 --transmission.handle-mass '-1 g'")
+    assert "command line: --transmission.handle-mass must be > 0 kg" in said
+    said = err("check it.toml --stiffness 100 --transmission.encoder hand")
+    assert '--transmission.encoder: there is no "hand"' in said
+    assert "--transmission.stiffness?" in err("check it.toml --transmission.stifness 1 --stiffness 1")
+    bare = "check --damping 1 --rate 1000 --stiffness 1 --transmission.stiffness"
+    assert "device has a transmission" in err(f"{bare} '1 N/mm'")
+    assert "transmission.stiffness is in N/m" in err(f"{bare} '1 N*m/rad'")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "check it.toml --stiffness 100",
+        "limit it.toml --stiffness 100",
+        "simulate it.toml --stiffness 100 --operator finger --duration 0.1",
+        "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1",
+        "sweep it.toml --stiffness 100 --vary 'rate=1000,2000'",
+        "compare it.toml --stiffness 100",
+        "emit it.toml --stiffness 100 -o out",
+        "serve it.toml --stiffness 100 --operator finger --duration 0.1",
+        "plan it.toml --force-noise 0.01 --transmission.handle-mass 1",
+        "report it.toml --stiffness 100 -o out.html",
+        "doctor it.toml --stiffness 100",
+        "play it.toml --stiffness 100 -o out.html",
+        "pair it.toml --stiffness 100",
+        "links it.toml",
+        "check haptic-paddle --stiffness 100 --transmission.stiffness 12000",
+    ],
+)
+def test_no_command_takes_it_for_rigid(err, line):
+    assert "counts motor, encoder and hand as one" in err(line)

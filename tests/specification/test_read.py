@@ -396,7 +396,7 @@ def test_command_line_names_are_not_shared():
             assert key.meaning
 
 
-KEYS = st.sampled_from([*DEVICE_KEYS, *option_keys(), "type", "environment"]) | texts()
+KEYS = st.sampled_from([*DEVICE_KEYS, *option_keys(), "type", "environment", "transmission"]) | texts()
 VALUES = toml_values() | st.sampled_from([1, Decimal("0.5"), "1 ms", [1, 2], *TYPES])
 
 

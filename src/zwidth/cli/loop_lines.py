@@ -9,7 +9,7 @@ from rich.text import Text
 
 from zwidth.cli.output import GLUE as GLUE
 from zwidth.cli.page import items
-from zwidth.model.device import Device
+from zwidth.model.device import Device, Transmission
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import Environment
 from zwidth.model.kind import name_of
@@ -17,8 +17,8 @@ from zwidth.model.specification.environments import TYPES
 from zwidth.model.specification.table import plain
 from zwidth.passivity.advice import Advice, in_lines
 from zwidth.quantity.exact import Exact, Interval
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.parameter import Parameter, parameters_of
 from zwidth.quantity.text import shown
 
 _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
@@ -31,8 +31,17 @@ def device_line(device: Device) -> str:
     """The device's name and the numbers that a verdict depends on."""
     name = plain(device.name, 40) if device.name not in ("", "device") else f"{device.motion} device"
     values = device.parameters()
-    parts = [_named(key, values[key], device.motion) for key in _OF_A_DEVICE if values.get(key)]
-    return f"{name}: {', '.join(parts)}"
+    parts = [_named(GLOSSARY[key], values[key], device.motion) for key in _OF_A_DEVICE if values.get(key)]
+    return f"{name}: {', '.join(parts)}{_between(device.transmission, device.motion)}"
+
+
+def _between(given: Transmission | None, motion: str) -> str:
+    if given is None:
+        return ""
+    own = parameters_of(Transmission)
+    parts = [_named(own[key].quantity, value, motion) for key, value in given.parameters().items() if value]
+    where = [] if given.encoder == "motor" else ["encoder at the handle"]
+    return f"; transmission: {', '.join([*parts, *where]) or 'unknown'}"
 
 
 def environment_line(environment: Environment, motion: str) -> str:
@@ -52,7 +61,7 @@ def _is_short(own: Parameter) -> bool:
 def _part(environment: Environment, name: str, key: Parameter, motion: str) -> str:
     value = getattr(environment, name)
     if key.is_number:
-        return _named(key.quantity.name, value, motion) if value or key.required else ""
+        return _named(GLOSSARY[key.quantity.name], value, motion) if value or key.required else ""
     if key.form == "environment":
         return f"around {environment_line(value, motion)}"
     if key.form == "flag":
@@ -62,8 +71,7 @@ def _part(environment: Environment, name: str, key: Parameter, motion: str) -> s
     return f"{value} {name}"
 
 
-def _named(key: str, value: Exact | Interval, motion: str) -> str:
-    entry = GLOSSARY[key]
+def _named(entry: Quantity, value: Exact | Interval, motion: str) -> str:
     return f"{entry.symbol} = {shown(value, entry.unit_for(motion), 6)}".replace(" ", GLUE)
 
 

@@ -13,13 +13,15 @@ from contextlib import contextmanager
 
 from zwidth.cli.parsing import Parameter, dest_of
 from zwidth.errors import InputError
+from zwidth.model.device import Transmission
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, option_keys
-from zwidth.model.specification.read import DEVICE_KEYS
+from zwidth.model.specification.read import BETWEEN, DEVICE_KEYS
 from zwidth.model.specification.table import quoted, suggestion
 from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.parameter import parameters_of
 
 BEHIND = "environment."
 """What stands before a key of the environment behind a coupling."""
@@ -37,6 +39,10 @@ def device_parameters() -> Iterator[Parameter]:
     for key in DEVICE_KEYS:
         if key in GLOSSARY:
             yield _quantity(key)
+        elif key.startswith(BETWEEN):
+            kind = parameters_of(Transmission)[key.removeprefix(BETWEEN)]
+            symbol = kind.quantity.symbol or "WHERE"
+            yield Parameter(key, symbol, kind.meaning + _bracket(_units(kind.quantity)))
         else:
             own = ROTARY.get(key)
             text = own.meaning + _bracket(own.unit) if own else _MEANINGS[key]

@@ -74,7 +74,7 @@ def law_program(device: Device, environment: Environment | object, *, single: bo
     `single` where the machine keeps numbers in 24 bits: a law that reckons with its own rounding then sets
     more aside.
     """
-    if not device.is_certain:
+    if not device.motor_side.is_certain:
         keys = (f.name for f in fields(device))
         named = ", ".join(in_words(key) for key in keys if isinstance(getattr(device, key), Interval))
         raise InputError(

@@ -202,8 +202,8 @@ class Device(Parametric):
     @property
     def is_certain(self) -> bool:
         """True when no parameter is an interval."""
-        flexible = self.transmission is not None and not self.transmission.is_certain
-        return not (flexible or any(isinstance(value, Interval) for value in self.parameters().values()))
+        known = self.transmission is None or self.transmission.is_certain
+        return known and not any(isinstance(getattr(self, f.name), Interval) for f in fields(self))
 
     @property
     def motor_side(self) -> Device:
@@ -232,7 +232,9 @@ class Device(Parametric):
             If the parameter is an interval or unknown; or if it is that of one of two bodies, and it was not
             asked of `motor_side`.
         """
-        if key in _OF_A_BODY:  # whoever asks for one number, and does not say of which, counts one body
+        if (
+            self.transmission is not None and key in _OF_A_BODY
+        ):  # whoever asks for one number, and does not say of which, counts one body
             require_rigid(self, f"a single {in_words(key)}")
         value = getattr(self, key)
         if not isinstance(value, Exact):

@@ -20,15 +20,17 @@ from typing import Any, TypeVar
 
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean, near_file
-from zwidth.model.device import Device, catalogue
+from zwidth.model.device import Device, Transmission, catalogue
 from zwidth.model.device.catalogue import Range
 from zwidth.model.device.rotary import ROTARY, rotary
 from zwidth.model.environment import Environment
 from zwidth.model.specification.environments import build_environment, option_keys
 from zwidth.model.specification.laws import NOT_PROVED, ROW
 from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
+from zwidth.model.specification.values import word
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.spoken import angles_in
 from zwidth.quantity.units import parse
 
@@ -40,8 +42,12 @@ _LONG_DELAY = Fraction(1, 2)
 LARGEST_FILE = 1 << 20
 """Bytes; a specification is a page of text."""
 
-DEVICE_KEYS = (*catalogue.PROPERTIES, *ROTARY, "motion", "name", "catalogue")
-"""The keys of a [device] table."""
+BETWEEN = "transmission."
+"""What stands before a key of the transmission on the command line."""
+
+_OWN_KEYS = (*catalogue.PROPERTIES, *ROTARY, "motion", "name")
+DEVICE_KEYS = (*_OWN_KEYS, "catalogue", *(BETWEEN + key for key in parameters_of(Transmission)))
+"""The keys of a [device] table, those of its transmission as on the command line."""
 
 LOOP_TABLES = ("device", "environment")
 WITH_LAWS = (*LOOP_TABLES, "law")
@@ -139,14 +145,14 @@ def build_device(table: Table) -> Device:
     """The device that a table describes."""
     if "catalogue" in table.values:
         return _catalogued(table, catalogue.device)
-    table.check_keys(DEVICE_KEYS, "a device")
+    table.check_keys((*DEVICE_KEYS, "transmission"), "a device")
     turning = [key for key in ROTARY if key in table.values]
     motion = table.text("motion") if "motion" in table.values else "rotary" if turning else "linear"
     if turning and motion == "linear":
         raise InputError(
             f"{table.label}: {turning[0]} belongs to a rotary device, and motion is linear; drop one"
         )
-    arguments = {key: _device_value(table, key, motion) for key in table.values}
+    arguments = _arguments(table, motion)
     arguments.setdefault("damping", None)  # Device says that it is missing
     with located(table.label):
         if motion != "rotary":
@@ -168,6 +174,33 @@ def _device_value(table: Table, key: str, motion: str) -> Any:
         return value
 
 
+def _arguments(table: Table, motion: str) -> dict[str, Any]:
+    """The values of a device's table, of its transmission in one."""
+    own = {key: _device_value(table, key, motion) for key in table.values if key in _OWN_KEYS}
+    inner = table.values.get("transmission", {})
+    if not isinstance(inner, dict):
+        raise InputError(f"{table.label}: transmission is a table, written [device.transmission]")
+    between = Table(table.label, inner)
+    for key, value in table.values.items():
+        if key.startswith(BETWEEN):
+            between.override(key.removeprefix(BETWEEN), value)
+    known = parameters_of(Transmission)
+    between.check_keys(known, "a transmission")
+    read: dict[str, Any] = {}
+    for key, value in between.values.items():
+        kind, name = known[key], BETWEEN + key
+        with located(between.where(key)):
+            read[key] = (
+                word(value, name, kind.words)
+                if kind.words
+                else read_number(
+                    value, kind.quantity, name, uncertain=True, bound=kind.bound, why=kind.why, motion=motion
+                )
+            )
+    given = read or "transmission" in table.values
+    return {**own, "transmission": Transmission(**read)} if given else own
+
+
 def question_time(written: object, delay: Exact | Interval, name: str) -> None:
     """Ask for the unit of a delay that is hardly meant in seconds."""
     bare = not (isinstance(written, str) and any(map(str.isalpha, written)))
@@ -185,7 +218,7 @@ _BETWEEN = {"delay": " between sample and force"}
 
 def _catalogued(table: Table, build: Callable[..., T]) -> T:
     """What `build` makes of a device of the catalogue and the numbers beside its name."""
-    table.check_keys(DEVICE_KEYS, "a device")
+    table.check_keys((*DEVICE_KEYS, "transmission"), "a device")
     name = table.text("catalogue")
     with located(table.label):
         motion = catalogue.entry(name).motion
@@ -194,7 +227,7 @@ def _catalogued(table: Table, build: Callable[..., T]) -> T:
     if foreign or asked != motion:
         there = "linear, at its handle" if motion == "linear" else "rotary, at its axis"
         raise InputError(f"{table.label}: {name} is {there}; drop {', '.join(foreign) or 'motion'}")
-    arguments = {key: _device_value(table, key, motion) for key in table.values if key != "catalogue"}
+    arguments = _arguments(table, motion)
     with located(table.label):
         return build(name, **arguments)
 
@@ -364,7 +397,8 @@ def environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str])
         table = Table(COMMAND_LINE, {"type": "wall"})
     for key, value in overrides.items():
         if key.removeprefix("environment.") not in ("type", *known):
-            options = sorted({*DEVICE_KEYS, *known, "type"})
+            every = {*DEVICE_KEYS, *known, "type"}
+            options = sorted(one for one in every if one.startswith(BETWEEN) == key.startswith(BETWEEN))
             raise InputError(
                 f"{COMMAND_LINE}: there is no parameter {quoted(key)}; {suggestion(key, options)}"
             )

@@ -99,6 +99,12 @@ def device_table(device: Device) -> dict[str, object]:
         name = "inertia" if key == "mass" and device.motion == "rotary" else key
         if key not in device.assumed:
             values[name] = quantity_text(value, GLOSSARY[key].unit_for(device.motion))
+    if device.transmission is not None:
+        own = parameters_of(type(device.transmission))
+        values["transmission"] = {
+            key: quantity_text(value, own[key].unit_for(device.motion))
+            for key, value in device.transmission.parameters().items()
+        } | {"encoder": device.transmission.encoder}
     return values
 
 
