@@ -61,7 +61,7 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
     from zwidth.passivity.value_iteration_fallback import has_gap, with_value_iteration
 
     device, law, closed = loop.device, loop.environment, None
-    if law.has_transfer_function:
+    if law.has_transfer_function and device.transmission is None:
         closed = check_by_closed_forms(device, law, contact=contact)
         if contact == "kept" or not has_gap(device, law, closed):
             return closed

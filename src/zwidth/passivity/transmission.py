@@ -15,7 +15,7 @@ to a hand behind a cable is not proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -32,14 +32,14 @@ from zwidth.passivity.linear.criterion import frequency
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear.transmission import Elastic, ElasticProof, ElasticRefutation, decide_elastic
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact, scope_of, unit_key
+from zwidth.passivity.scope import Contact, Outcome, scope_of, unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.violation import FORMAT as VIOLATION
 from zwidth.passivity.witness.witness import Setting
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import at_most, exact_text, in_unit
+from zwidth.quantity.text import at_least, at_most, exact_text, in_unit
 
 Judge = Callable[[Device], Verdict]
 
@@ -117,6 +117,7 @@ class TransmissionVerdict(Verdict):
         "the verdict on the motor's side alone; None where it says nothing", default=None
     )
     elastic: Elastic | None = known("the loop with its transmission, where it is known", default=None)
+    asked: Contact = known("of which contact", default="made and broken")
     open: str = known("why it is undecided, in a sentence", default="")
 
     @property
@@ -135,9 +136,11 @@ class TransmissionVerdict(Verdict):
         return "the linear criterion of motor, transmission and hand"
 
     @property
-    def _exactly(self) -> bool:
-        """True where the criterion of motor, transmission and hand says all: nothing rubs, nothing steps."""
-        return self.elastic is not None and is_ideal(self.device)
+    def _with(self) -> str:
+        """What the criterion of motor, transmission and hand leaves out of what is asked, in words."""
+        kept = self.environment.unilateral and self.asked != "kept"
+        parts = ("contact kept" if kept else "", "" if is_ideal(self.device) else "friction viscous alone")
+        return ", ".join(part for part in parts if part)
 
     @cached_property
     @answers(
@@ -166,7 +169,8 @@ class TransmissionVerdict(Verdict):
     @answers("largest passive stiffness that is proved; null if none is", quantity="stiffness")
     def max_stiffness(self) -> float | None:
         """Largest K that is proved [N/m; N·m/rad]."""
-        proved = [self.max_stiffness_any_transmission, self.max_stiffness_viscous if self._exactly else None]
+        own = None if self._with else self.max_stiffness_viscous
+        proved = [self.max_stiffness_any_transmission, own]
         return max((k for k in proved if k is not None), default=None)
 
     @property
@@ -182,17 +186,37 @@ class TransmissionVerdict(Verdict):
 
     @property
     def advice(self) -> tuple[Advice, ...]:
-        """How stiff a law may be."""
-        to, unit = self.max_stiffness, GLOSSARY["stiffness"].unit_for(self.device.motion)
-        if to is None or to == inf or not parameter_limits.has_stiffness(self.environment):
-            return ()
-        now = float(parameter_limits.stiffness_of(self.environment))
-        most = in_unit(at_most(to, unit), unit)
-        if self.is_proved:
-            text = f"stiffness may go up to {most} (now {in_unit(now, unit)})"
-            return (Advice("stiffness", now, to, unit, "slack", text),)
-        text = f"lower the stiffness from {in_unit(now, unit)} to {most}"
-        return (Advice("stiffness", now, to, unit, "change", text),)
+        """How stiff the law may be; how much damping the motor's side needs."""
+        return tuple(self._advised())
+
+    def _advised(self) -> Iterator[Advice]:
+        proved, in_contact = self.is_proved, self.outcome == "passive in contact"
+        unit = {name: self.device.unit(name) for name in ("stiffness", "damping")}
+        most = self.max_stiffness_viscous if in_contact else self.max_stiffness
+        to = at_most(most, unit["stiffness"])
+        if to and to != inf and parameter_limits.has_stiffness(self.environment):
+            now = float(parameter_limits.stiffness_of(self.environment))
+            here, there = (in_unit(value, unit["stiffness"]) for value in (now, to))
+            text = (
+                f"stiffness may go up to {there} (now {here})"
+                if proved
+                else f"lower the stiffness from {here} to {there}"
+            )
+            yield Advice("stiffness", now, to, unit["stiffness"], "slack" if proved else "change", text)
+        need = getattr(self.side, "required_damping", None)
+        if need is not None and not proved:
+            now = float(ends(self.device.damping)[0])
+            more = at_least(now + need - float(ends(seen_at_motor(self.device).damping)[0]), unit["damping"])
+            assert more is not None
+            here, there = (in_unit(value, unit["damping"]) for value in (now, more))
+            yield Advice(
+                "damping",
+                now,
+                more,
+                unit["damping"],
+                "change",
+                f"raise the damping of the motor's side from {here} to {there}",
+            )
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
@@ -202,9 +226,8 @@ class TransmissionVerdict(Verdict):
             most = in_unit(at_most(self.max_stiffness_any_transmission, unit), unit)
             rows.append(("largest stiffness, however it gives way", most))
         if self.max_stiffness_viscous is not None:
-            own = "this transmission" if self._exactly else "this one, if friction were viscous alone"
             most = in_unit(at_most(self.max_stiffness_viscous, unit), unit)
-            rows.append((f"largest stiffness, {own}", most))
+            rows.append((", ".join(("largest stiffness, this one", *filter(None, (self._with,)))), most))
         if self.resonance is not None:
             rows.append(("the motor swings on it at", in_unit(self.resonance, "Hz")))
         return rows
@@ -236,11 +259,11 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
         return TransmissionVerdict(
             side.outcome, scope, device, law, side.certificate,
             available_storage=side.available_storage, at_limit=side.at_limit, theorem=side.theorem, side=side,
-            elastic=elastic_of(device, law),
+            elastic=elastic_of(device, law), asked=asked,
         )  # fmt: skip
     scope = scope_of(device.motor_side, law).replace(transmission="as given")
     elastic = elastic_of(device, law)
-    found = TransmissionVerdict("undecided", scope, device, law, side=side, elastic=elastic)
+    found = TransmissionVerdict("undecided", scope, device, law, side=side, elastic=elastic, asked=asked)
     if elastic is None:
         return replace(found, open=_unknown(given, device, law))
     decision = decide_elastic(elastic)
@@ -249,21 +272,18 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
         violation = ElasticViolation(elastic, setting, decision)
         if decision.reason == "too close to zero" or not violation.verify():
             return replace(found, open=_TOO_CLOSE)
-        scope = scope.replace(contact=violation.contact)
-        return TransmissionVerdict(
-            "active", scope, device, law, violation=violation, side=side, elastic=elastic
-        )
+        found = replace(found, outcome="active", scope=scope.replace(contact=violation.contact))
+        return replace(found, violation=violation)
     if not is_ideal(device):
         return replace(found, open=_IF_IDEAL)
     certificate = Certificate((_proof(elastic, setting, decision),))
     covered = certificate.covered()
     if covered is None or covered.shows != "passive":
         return replace(found, open=_UNCONFIRMED)
-    in_contact = covered.contact == "kept" != asked
-    return TransmissionVerdict(
-        "passive in contact" if in_contact else "passive",
-        scope.replace(contact=covered.contact), device, law, certificate, side=side, elastic=elastic,
-    )  # fmt: skip
+    outcome: Outcome = "passive in contact" if covered.contact == "kept" != asked else "passive"
+    return replace(
+        found, outcome=outcome, scope=scope.replace(contact=covered.contact), certificate=certificate
+    )
 
 
 def _unknown(given: Transmission, device: Device, law: Environment) -> str:

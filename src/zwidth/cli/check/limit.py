@@ -116,6 +116,8 @@ def _refuse_without_stiffness(loop: Specification) -> None:
 def named(typed: str) -> str:
     """The name in Python of what is an option here: `damping` is always the device's."""
     name = typed.strip().replace("-", "_")
+    if name.startswith("transmission."):
+        return name
     on_device, in_environment = set(PROPERTIES) & set(GLOSSARY), {*option_keys(), "gain"}
     if name not in on_device | in_environment:
         known = sorted(key.replace("_", "-") for key in on_device | in_environment)

@@ -149,6 +149,8 @@ def _claim(verdict: Verdict) -> str:
     if verdict.outcome != "active":
         return verdict.claim
     if verdict.witness is None:
+        if verdict.scope.transmission == "as given":  # of two bodies none is sought
+            return verdict.claim
         return f"{verdict.claim} No motion that shows it was found short enough to be written down."
     return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 
