@@ -11,6 +11,7 @@ import pytest
 import zwidth as zw
 from zwidth.cli.main import main
 from zwidth.model.specification.write import parsed, written
+from zwidth.show.explorer.state import State
 
 CABLE = zw.Transmission(
     stiffness="12 N/mm", damping=0.5, handle_mass=(0.03, 0.04), handle_damping="0.09 N*s/m", encoder="handle"
@@ -81,6 +82,9 @@ def test_at_a_handle_it_is_seen_as_the_device_is():
 
 
 WALL = zw.Wall(100)
+PRESSED = zw.Log.from_arrays(
+    position=np.arange(100.0), hand_force=np.arange(100.0), sample_period=0.001, resolution=0
+)
 REFUSED = {
     "check": lambda d: zw.check(d, WALL),
     "check without grid": lambda d: zw.check(d, WALL, iterate=False),
@@ -123,6 +127,9 @@ REFUSED = {
     "curve": lambda d: zw.plots.worst_case(d, 100),
     "doctor": lambda d: zw.servo.doctor(d, duration=60, progress=lambda *_: None),
     "tissue": lambda d: zw.tissue.AdaptiveSolid(d, (100, 100, 1)),
+    "diagnose": lambda d: zw.diagnose(zw.samples.path("shaking.csv"), d.replace(motion="rotary")),
+    "finger": lambda d: zw.identification.identify_finger(PRESSED, d),
+    "explorer": lambda d: State.of(d, WALL),
     "bounding": lambda d: zw.formulas.check_bounding(d, zw.render(WALL, zw.rendering.ForceBounding())),
 }
 
