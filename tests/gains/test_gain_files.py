@@ -68,7 +68,7 @@ def test_a_fork_may_leave_out_compensation(tmp_path):
 
 
 def test_a_law_of_its_own_for_the_leader(tmp_path):
-    """`Bilateral`: local damping, on the host, 0.3 of the compensation, of the follower none; the notes say one
+    """`Bilateral`: local damping, on the host, 0.3 of the compensation, none of the follower; notes say one
     thing of Kd. A force that is fed back is refused, and so is the leader's law alone."""
     text = "Bilateral:\n  Kp: [60, 60, 60, 60, 8, 10, 8, 5]\n  Kd: [3, 3, 3, 3, 0.2, 0.2, 0.2, 0.2]\n"
     leader, follower = openarm() + text, openarm("Follower", Kp=[200] * 8)

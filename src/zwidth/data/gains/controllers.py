@@ -60,6 +60,15 @@ _READ = (
     "end stiffness with translation and rotation, task with k_pos_x … k_rot_z"
 )
 
+_INTERFACES = ("command_interfaces", "command_interface", "interface_name")
+"""What a controller of ROS 2 commands: of a trajectory, a PID, what is passed on."""
+
+_OF_DRIVE = (
+    "a hand there feels the drive's own loop, of which this file has no gain. Give its spring and damper, "
+    "from its maker, its impedance mode or a test, as {arm: {ros__parameters: {gains: {JOINT: {p: …, d: "
+    "…}}}}} in N·m/rad and N·m·s/rad, and its --rate; why an arm shakes, zwidth diagnose RECORDING tells"
+)
+
 
 class _OtherLaw(InputError):
     """Of gains of a law that is none of a spring and a damper."""
@@ -199,19 +208,25 @@ def read_controllers(path: str | Path) -> Controllers:
     joints, cartesian = list[JointLaw](), list[CartesianGains]()
     seen, others = list[tuple[str, ...]](), list[str]()
     for inner in table.below():
-        if _fits(inner):
+        if _fits(inner) and (_admittance(inner) or not _moves(_commanded(inner))):
             try:
                 joints += _joints(inner)
                 cartesian += _cartesian(inner)
             except _OtherLaw as error:
                 others.append(str(error))
             seen.append(inner.keys)
+    # Outer tables last: a controller's own interfaces say more than its type at the manager.
+    named = ((_name(inner.keys), _commanded(inner)) for inner in reversed([*table.below()]))
+    commanded = {name: what for name, what in named if what}
     if not joints and not cartesian:
         for inner in table.below():
             refuse_observers(inner)
+        moved = sorted(name for name, what in commanded.items() if _moves(what))
         raise InputError(
             others[0]
             if others
+            else f"{table.label}: positions or speeds are commanded by {', '.join(moved)}: {_OF_DRIVE}"
+            if moved
             else f"{table.label}: no gains of a controller that are known; read are {_READ}. Write others in "
             "one of these forms, {arm: {ros__parameters: {gains: {JOINT: {p: …, d: …}}}}}, or ask zwidth "
             "workspace ARM.urdf --pose --stiffness … --rotational-stiffness …"
@@ -225,7 +240,9 @@ def read_controllers(path: str | Path) -> Controllers:
         ]
     for name, keys in _controllers(table):
         if not any(own[: len(keys)] == keys for own in seen):
-            others.append(f"{name}: it has no gains that are read")
+            what = commanded.get(_name(keys), "")
+            drive = f"it commands {quoted(what)} of a drive, whose own loop is not in the file"
+            others.append(f"{name}: {drive if _moves(what) else 'it has no gains that are read'}")
     notes += [f"left out: {text}" for text in others]
     found = Controllers(tuple(joints), tuple(cartesian), None, tuple(notes))
     for inner in table.below():
@@ -248,6 +265,24 @@ def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...]]]:
             yield "/".join(inner.keys), inner.keys
         elif isinstance(kind, str) and "/" in kind:
             yield f"{'/'.join(inner.keys)} ({kind})", inner.keys
+
+
+def _name(keys: tuple[str, ...]) -> str:
+    """A controller's own name, without name space."""
+    return next((key for key in reversed(keys) if key != "ros__parameters"), "").rsplit("/", 1)[-1]
+
+
+def _commanded(table: GainTable) -> str:
+    """What a controller commands, as its interfaces say it, else its type; nothing where neither is there."""
+    given = next((table.values[key] for key in (*_INTERFACES, "type") if key in table), "")
+    return ", ".join(map(str, given)) if isinstance(given, list) else str(given)
+
+
+def _moves(commanded: str) -> bool:
+    """True of positions and speeds, which a drive follows by a loop of its own."""
+    text = commanded.lower()
+    moving = any(word in text for word in ("position", "velocity", "acceleration", "pos_vel"))
+    return moving and "effort" not in text and "torque" not in text
 
 
 def _inner(table: GainTable, key: str) -> Mapping[str, Any]:
@@ -311,11 +346,12 @@ def _joints(table: GainTable) -> Iterator[JointLaw]:
 
 
 def _commands_efforts(table: GainTable, key: str) -> None:
-    """Elsewhere gains make a speed or a position of an error, or an effort of the error of a speed."""
-    interfaces, kind = table.values.get("command_interfaces"), str(table.values.get("type", "effort"))
-    commands = ", ".join(map(str, interfaces)) if isinstance(interfaces, list) else kind
-    if "effort" not in commands or kind.endswith("VelocityController"):
-        where = table.where("command_interfaces" if isinstance(interfaces, list) else key)
+    """Elsewhere gains make something else of an error, or an effort of the error of a speed."""
+    commands, of = _commanded(table) or "effort", table.values.get("reference_and_state_interfaces")
+    if isinstance(of, list) and of and of[0] != "position":
+        commands += " by " + ", ".join(map(str, of))
+    if "effort" not in commands or " by " in commands or commands.endswith("VelocityController"):
+        where = table.where(next((name for name in _INTERFACES if name in table), key))
         raise _OtherLaw(
             f"{where}: gains act on {quoted(commands)}; they are a spring and a damper where the command is "
             "an effort made of positions"
