@@ -78,6 +78,7 @@ MOVED = """
     torque: {type: maker/TorqueCommandController}
     state: {type: joint_state_broadcaster/JointStateBroadcaster}
 /**/arm: {ros__parameters: {joints: [a], command_interfaces: [COMMANDS]}}
+/**/own: {ros__parameters: {robot_name: x}}
 /**/torque: {ros__parameters: {robot_name: x, interface_name: effort}}
 """
 SERVO = "a: {{ros__parameters: {{{}, reference_and_state_interfaces: [{}], gains: {{j: {{p: 9}}}}}}}}"
@@ -216,13 +217,16 @@ def test_dampers_of_ratios_and_of_crisp(tmp_path):
         (FORCE.replace("pd_", "pid_"), "pid_gains: of an admittance"),
         ("a: {ros__parameters: {x: 1}}", "no gains of a controller"),
         (TRAJECTORY.replace("[effort]", "[velocity]"), "commanded by arm_controller: a hand there"),
-        (MOVED.replace("COMMANDS", "position"), "by arm, own: a hand there feels the drive's own loop"),
-        (MOVED.replace("COMMANDS", "effort"), "speeds are commanded by own: "),
+        (
+            MOVED.replace("COMMANDS", "position"),
+            "by /../arm, /../own: a hand there feels the drive's own loop",
+        ),
+        (MOVED.replace("COMMANDS", "effort"), "speeds are commanded by /../own: "),
         (SERVO.format("command_interfaces: [position, velocity]", "position"), "are commanded by a: "),
         (SERVO.format("command_interface: position", "position"), "are commanded by a: "),
         (SERVO.format("command_interface: effort", "velocity, acceleration"), 'on "effort by velocity, '),
-        (ONE_TYPE.format("velocity_controllers/JointGroupVelocityController"), "are commanded by a: "),
-        (ONE_TYPE.format("pos_vel_controllers/JointTrajectoryController"), "are commanded by a: "),
+        (ONE_TYPE.format("velocity_controllers/JointGroupVelocityController"), r"are commanded by a \("),
+        (ONE_TYPE.format("pos_vel_controllers/JointTrajectoryController"), r"are commanded by a \("),
         (CARTESIAN.replace(", z: 400.0", ""), "z is missing"),
     ],
 )

@@ -18,6 +18,7 @@ fzi-forschungszentrum-informatik/cartesian_controllers.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -62,6 +63,9 @@ _READ = (
 
 _INTERFACES = ("command_interfaces", "command_interface", "interface_name")
 """What a controller of ROS 2 commands: of a trajectory, a PID, what is passed on."""
+
+_MOVES = re.compile(r"(?!.*(effort|torque)).*(position|velocity|acceleration|pos_vel)", re.IGNORECASE)
+"""Of commands that a drive follows by a loop of its own."""
 
 _OF_DRIVE = (
     "a hand there feels the drive's own loop, of which this file has no gain. Give its spring and damper, "
@@ -208,20 +212,17 @@ def read_controllers(path: str | Path) -> Controllers:
     joints, cartesian = list[JointLaw](), list[CartesianGains]()
     seen, others = list[tuple[str, ...]](), list[str]()
     for inner in table.below():
-        if _fits(inner) and (_admittance(inner) or not _moves(_commanded(inner))):
+        if _fits(inner) and (_admittance(inner) or not _MOVES.match(_commanded(inner))):
             try:
                 joints += _joints(inner)
                 cartesian += _cartesian(inner)
             except _OtherLaw as error:
                 others.append(str(error))
             seen.append(inner.keys)
-    # Outer tables last: a controller's own interfaces say more than its type at the manager.
-    named = ((_name(inner.keys), _commanded(inner)) for inner in reversed([*table.below()]))
-    commanded = {name: what for name, what in named if what}
     if not joints and not cartesian:
         for inner in table.below():
             refuse_observers(inner)
-        moved = sorted(name for name, what in commanded.items() if _moves(what))
+        moved = [name for name, _, what in _controllers(table) if _MOVES.match(what)]
         raise InputError(
             others[0]
             if others
@@ -238,11 +239,10 @@ def read_controllers(path: str | Path) -> Controllers:
         others += [
             f"{one.source}: zwidth workspace ARM.urdf --pose --wall FILE decides it" for one in cartesian
         ]
-    for name, keys in _controllers(table):
+    for name, keys, what in _controllers(table):
         if not any(own[: len(keys)] == keys for own in seen):
-            what = commanded.get(_name(keys), "")
             drive = f"it commands {quoted(what)} of a drive, whose own loop is not in the file"
-            others.append(f"{name}: {drive if _moves(what) else 'it has no gains that are read'}")
+            others.append(f"{name}: {drive if _MOVES.match(what) else 'it has no gains that are read'}")
     notes += [f"left out: {text}" for text in others]
     found = Controllers(tuple(joints), tuple(cartesian), None, tuple(notes))
     for inner in table.below():
@@ -255,34 +255,26 @@ def is_of_controllers(table: GainTable) -> bool:
     return next(_controllers(table), None) is not None or any(_fits(inner) for inner in table.below())
 
 
-def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """By what they are called, controllers of ROS 2, and of ROS 1, where a `type` says what each is."""
-    for inner in table.below():
-        kind = inner.values.get("type")
-        if inner.keys[-1:] == ("controller_manager",) or "ros__parameters" in inner.keys:
+def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...], str]]:
+    """By what they are called, controllers of ROS 2, and of ROS 1, where a `type` says what each is; and what
+    each commands: of ROS 2 its type stands at the manager."""
+    every = [*table.below()]
+    types = {inner.keys[-1]: _commanded(inner) for inner in every if inner.keys and "type" in inner}
+    for inner in every:
+        kind, name = inner.values.get("type"), "/".join(inner.keys)
+        if name.endswith("controller_manager") or "ros__parameters" in inner.keys:
             continue
         if "ros__parameters" in inner:
-            yield "/".join(inner.keys), inner.keys
+            own = _commanded(inner.table("ros__parameters")) if _inner(inner, "ros__parameters") else ""
+            yield name, inner.keys, own or types.get(name.rsplit("/", 1)[-1], "")
         elif isinstance(kind, str) and "/" in kind:
-            yield f"{'/'.join(inner.keys)} ({kind})", inner.keys
-
-
-def _name(keys: tuple[str, ...]) -> str:
-    """A controller's own name, without name space."""
-    return next((key for key in reversed(keys) if key != "ros__parameters"), "").rsplit("/", 1)[-1]
+            yield f"{name} ({kind})", inner.keys, kind
 
 
 def _commanded(table: GainTable) -> str:
     """What a controller commands, as its interfaces say it, else its type; nothing where neither is there."""
     given = next((table.values[key] for key in (*_INTERFACES, "type") if key in table), "")
     return ", ".join(map(str, given)) if isinstance(given, list) else str(given)
-
-
-def _moves(commanded: str) -> bool:
-    """True of positions and speeds, which a drive follows by a loop of its own."""
-    text = commanded.lower()
-    moving = any(word in text for word in ("position", "velocity", "acceleration", "pos_vel"))
-    return moving and "effort" not in text and "torque" not in text
 
 
 def _inner(table: GainTable, key: str) -> Mapping[str, Any]:

@@ -261,8 +261,8 @@ def _motor(table: GainTable, joint: int) -> str:
 #
 # Bilateral, of a fork over a network (IS0moto/openarm_teleop, the same file: leader_step, unilateral_step):
 #
-#     leader    τ = K (q' − q) − Kd q̇ + gravity + 0.3 (Fc tanh(0.1 k q̇) + Fv q̇ + Fo)      on the host
-#     follower  τ = Kp (q' − q) + Kd (q̇' − q̇) + gravity                                   in its drives
+#     leader    τ = K (q' − q) − Kd q̇ + gravity + 0.3 (Fc tanh(0.1 k q̇) + Fv q̇ + Fo)
+#     follower  τ = Kp (q' − q) + Kd (q̇' − q̇) + gravity
 
 OPENARM = "openarm"
 
@@ -272,24 +272,16 @@ _FRICTION = ("Fc", "k", "Fv")
 _SLOPE = Fraction(1, 10)
 """What k is multiplied by in the code."""
 
-_SHARE = Fraction(3, 10)
-"""Of the compensation that the fork's leader adds."""
-
-_SPEED = (
-    "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
-    "positions"
-)
-_TAKEN = (
-    "the factor 0.1 is in the code, although the comment in the file says tanh(k v); taken as computed once "
-    "in a sample period, from the move before; the offset Fo gives back what it takes, like a weight"
-)
 _OPENARM_NOTES = (
     "Kd is of the speed of one arm against the other: v_des is the partner's speed on both sides "
     "(enactic/openarm_teleop, bilateral_step); it damps nothing when both arms move together",
-    f"friction is compensated by Fc tanh(0.1 k v) + Fv v: {_TAKEN}",
+    "friction is compensated by Fc tanh(0.1 k v) + Fv v: the factor 0.1 is in the code, although the comment "
+    "in the file says tanh(k v); taken as computed once in a sample period, from the move before; the offset "
+    "Fo gives back what it takes, like a weight",
     "of the gripper the code takes the speed in the compensation from beyond the end of its list "
     "(bilateral_step): what is added there is not known, and it is decided as the file means it",
-    _SPEED,
+    "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
+    "positions",
     "the threads of both arms are not in step, so that readings are 1 to 4.3 ms old, now more and now less: "
     "a constant age is decided",
 )
@@ -297,9 +289,8 @@ _BILATERAL_NOTES = (
     "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of its own "
     "speed; the follower's Kd is of its speed against the leader's, which is its v_des "
     "(IS0moto/openarm_teleop, leader_step and unilateral_step)",
-    "friction is compensated on the leader alone, by 0.3 times Fc tanh(0.1 k v) + Fv v where LeaderArmParam "
-    f"gives them: {_TAKEN}",
-    _SPEED,
+    *_OPENARM_NOTES[1:4:2],
+    "of that compensation the leader has 0.3, and the follower none",
     "both arms are taken as computed once in a sample period, the follower too, which in the fork has a loop "
     "in its drive: with that it is another pair, which is not decided here",
     "the fork runs at 500 Hz, and its leader.yaml tells of 3 ms there and back over a wire: give --rate 500 "
@@ -405,7 +396,7 @@ def _on_the_host(table: GainTable, stock: list[Gains] | None) -> list[Gains]:
         )
     laws: list[FrictionCompensation] = [NONE] * len(stiffness)
     if stock is not None and len(stock) == len(stiffness):
-        laws = [gains.compensation.scaled(_SHARE) for gains in stock]
+        laws = [gains.compensation.scaled(Fraction(3, 10)) for gains in stock]
     return [
         Gains(k, local_damping=d, compensation=law, source=f"{table.label}, Kp[{n}]")
         for n, (k, d, law) in enumerate(zip(stiffness, local, laws, strict=True))
