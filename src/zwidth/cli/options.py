@@ -10,6 +10,7 @@ import argparse
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 from zwidth.cli.parsing import Parameter, dest_of
 from zwidth.errors import InputError
@@ -140,7 +141,7 @@ def _bracket(unit: str) -> str:
     return f" [{unit}]" if unit not in ("", "1") else ""
 
 
-SHEET = {"--sheet NAME": "of a workbook, where several hold a recording"}
+SHEET = {"--sheet NAME": "of a workbook, where several hold a recording; of a LeRobot dataset an episode"}
 
 
 def pairs_of(option: str, typed: Sequence[str] | None, quantities: Sequence[str]) -> dict[str, str]:
@@ -165,18 +166,29 @@ _PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|
 _OPTION_NAMES = {"columns": "--column", "units": "--unit", "scale": "--scale"}
 
 
+def reading_of(arguments: argparse.Namespace, quantities: Sequence[str]) -> dict[str, Any]:
+    """What is typed of the columns, as `read_log` takes it."""
+    reading = {}
+    for name, option in _OPTION_NAMES.items():
+        if pairs := pairs_of(option, getattr(arguments, name), quantities):
+            reading[name] = {k: None if name == "columns" and v == "none" else v for k, v in pairs.items()}
+    return reading
+
+
 @contextmanager
 def as_options() -> Iterator[None]:
     """What to try, in messages, as it is typed here."""
     try:
         yield
     except InputError as error:
-        raise InputError(_PYTHON.sub(_as_option, _plain_options(sheet_option(str(error))))) from None
+        text = as_typed(str(error)).replace("sample_rate or sample_period", "--rate or --sample-period")
+        text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
+        raise InputError(re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)) from None
 
 
-def sheet_option(text: str) -> str:
-    """The name of a sheet, in a message, as it is typed here."""
-    return re.sub(r'\bsheet=("[^"]*")', r"--sheet \1", text)
+def as_typed(text: str) -> str:
+    """Columns and sheets, in a message, as they are typed here."""
+    return _PYTHON.sub(_as_option, re.sub(r'\bsheet=("[^"]*")', r"--sheet \1", text))
 
 
 def _as_option(found: re.Match[str]) -> str:
@@ -184,9 +196,3 @@ def _as_option(found: re.Match[str]) -> str:
     value = value if value is not None else {"None": "none"}.get(other, "…")
     written = f"'{quantity}={value}'" if " " in value else f"{quantity}={value}"
     return f"{_OPTION_NAMES[name]} {written}"
-
-
-def _plain_options(text: str) -> str:
-    text = text.replace("sample_rate or sample_period", "--rate or --sample-period")
-    text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
-    return re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)
