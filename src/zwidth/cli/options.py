@@ -146,20 +146,18 @@ SHEET = {"--sheet NAME": "of a workbook, where several hold a recording; of a Le
 
 def pairs_of(option: str, typed: Sequence[str] | None, quantities: Sequence[str]) -> dict[str, str]:
     """What an option that may come several times says of each quantity."""
-    pairs = dict(_pair(option, text, quantities) for text in typed or ())
-    if len(pairs) < len(typed or ()):
-        raise InputError(f"{option} names a quantity twice; which one is meant?")
+    pairs: dict[str, str] = {}
+    for text in typed or ():
+        key, sign, value = text.partition("=")
+        name = key.strip().replace("-", "_")
+        if not sign or not value:
+            raise InputError(f"{option} is written {option} {quantities[1]}=VALUE, got {quoted(text)}")
+        if name not in quantities:
+            raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, quantities)}")
+        if name in pairs:
+            raise InputError(f"{option} names a quantity twice; which one is meant?")
+        pairs[name] = value
     return pairs
-
-
-def _pair(option: str, typed: str, quantities: Sequence[str]) -> tuple[str, str]:
-    key, sign, value = typed.partition("=")
-    name = key.strip().replace("-", "_")
-    if not sign or not value:
-        raise InputError(f"{option} is written {option} {quantities[1]}=VALUE, got {quoted(typed)}")
-    if name not in quantities:
-        raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, quantities)}")
-    return name, value
 
 
 _PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(None|…))\}")

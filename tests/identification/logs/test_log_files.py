@@ -213,7 +213,7 @@ def lerobot_dataset(folder: Path, recording, about: dict[str, Any], names: Any) 
         ("so101_follower", "v2.1", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
         ("so101_follower", "v3.0", ["pan.pos", "gripper.pos"], "gripper.pos", "mostly 0 … 100"),
         ("so100", "v2.1", {"motors": ["main_pan", "main_gripper"]}, "main_pan", "mostly degrees"),
-        ("koch_follower", "v3.0", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
+        ("koch_follower", "v3.0", [["pan.pos", "gripper.pos"]], "pan.pos", "mostly -100 … 100"),
         ("lekiwi", "v3.0", {"gripper.pos": 1, "pan.pos": 0}, "pan.pos", "since LeRobot 0.6.0"),
         ("openarm_follower", "v3.0", ["joint_1.pos", "joint_2.pos"], "joint_1.pos", "mostly degrees"),
         ("aloha", "v2.1", ["a"], "0", "use_degrees"),  # names that are not those of two numbers
@@ -295,6 +295,11 @@ def test_what_is_no_folder_of_episodes_is_refused(recording, tmp_path):
     whole.with_name("file-001.parquet").write_bytes(b"PAR1")
     with pytest.raises(zw.InputError, match=r"file-001.parquet cannot be read"):
         zw.read_log(folder, **state)
+    for name in ("file-000", "file-001"):
+        whole.with_name(f"{name}.parquet").write_bytes(b"version https://git-lfs.github.com/spec/v1\n")
+    for path in (folder, whole):
+        with pytest.raises(zw.InputError, match=r"file-000\.parquet is a pointer of Git LFS .* git lfs pull"):
+            zw.read_log(path, **state)
     for inside in ("set", "bare"):
         shutil.rmtree(tmp_path / inside)
     with pytest.raises(

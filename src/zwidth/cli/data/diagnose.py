@@ -112,8 +112,7 @@ def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
             reading["resolution"] = device.resolution
         return diagnose(Path(arguments.log), device, law=law, **reading)
     except InputError as error:
-        text = str(error).replace("sample_rate or sample_period", "--log-rate")
-        raise InputError(as_typed(text)) from None
+        raise InputError(as_typed(str(error).replace("sample_rate or sample_period", "--log-rate"))) from None
 
 
 def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:

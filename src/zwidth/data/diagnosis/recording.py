@@ -244,9 +244,9 @@ def _recording(
         )
     longest = _longest(log)
     if log.runs > 1:
-        episodes = any(finding.kind == "episodes" for finding in log.findings)
-        choice = '; sheet="0" and so on chooses an episode' if episodes else ""
-        looked = f"run {longest.run + 1} of {log.runs} is looked at, the longest: {LEFT_OUT}{choice}"
+        looked = f"run {longest.run + 1} of {log.runs} is looked at, the longest: {LEFT_OUT}"
+        if any(finding.kind == "episodes" for finding in log.findings):
+            looked += '; sheet="0" and so on chooses an episode'
         supposed = (looked, *supposed)
     asked = None if commanded is None else _longest(commanded).actuator_force
     given = None if applied is None else _longest(applied).actuator_force
@@ -268,11 +268,10 @@ def _recording(
 
 
 def _at(run: Block, runs: int, target: Log | float) -> Array:
-    """[m; rad] the target in a run, of so many: rows that one column lacks are not missing in another.  Where
-    it stands does not count."""
+    """[m; rad] the target in a run, of so many, with each of which time may start again: rows that one column
+    lacks are not missing in another.  Where it stands does not count."""
     if not isinstance(target, Log):
         return np.full_like(run.time, target)
-    # Time may start again with each run.
     blocks = [block for block in target.blocks() if target.runs != runs or block.run == run.run]
     known = np.concatenate([block.time for block in blocks])
     return np.asarray(np.interp(run.time, known, np.concatenate([block.position for block in blocks])))

@@ -256,8 +256,7 @@ def is_of_controllers(table: GainTable) -> bool:
 
 
 def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...], str]]:
-    """By what they are called, controllers of ROS 2, and of ROS 1, where a `type` says what each is; and what
-    each commands: of ROS 2 its type stands at the manager."""
+    """The controllers by name, of ROS 1 by their `type`, of ROS 2 that of the manager; what each commands."""
     every = [*table.below()]
     types = {inner.keys[-1]: _commanded(inner) for inner in every if inner.keys and "type" in inner}
     for inner in every:

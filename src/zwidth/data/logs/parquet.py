@@ -41,7 +41,7 @@ _Part = tuple[str, int | None, pa.DataType]
 
 def parquet_table(path: Path, episode: str | None = None) -> Table:
     """Of a file, or of a folder with a LeRobot dataset; of that the episode of this number, or all."""
-    files = _files(path) if path.is_dir() else [path]
+    files = dataset_files(path) if path.is_dir() else [path]
     with readable(str(files[0])):
         schema = pq.read_schema(files[0])
     again = next((name for name in schema.names if schema.names.count(name) > 1), None)
@@ -187,7 +187,7 @@ def _values(column: pa.Array, kind: pa.DataType) -> Values:
 # datasets/utils.py; `use_degrees` of robots/*/config_*.py, v0.3.2 to v0.6.1, docs/source/backwardcomp.mdx).
 
 
-def _files(path: Path) -> list[Path]:
+def dataset_files(path: Path) -> list[Path]:
     """The files of the one dataset that a folder is, is in, or holds."""
     infos = (info for depth in ("", "*/", "*/*/", "*/*/*/") for info in path.glob(f"{depth}meta/info.json"))
     found = sorted(str(info.parent.parent) for info in infos)
@@ -216,12 +216,14 @@ def _dataset(path: Path) -> dict[str, Any]:
 
 
 def _names(dataset: Mapping[str, Any], field: str, size: int) -> list[Any]:
-    """What the places of a list are called, as a list or within a table; else their numbers."""
+    """What the places of a list are called, as a list or inside a list or table; else their numbers."""
     try:
         names = dataset["features"][field]["names"]
-        if isinstance(names, dict):
-            lists = [each for each in names.values() if isinstance(each, list)]
-            names = list(chain(*lists)) if lists else sorted(names, key=lambda name: int(names[name]))
+        values = names.values() if isinstance(names, dict) else names
+        if lists := [each for each in values if isinstance(each, list)]:
+            names = list(chain(*lists))
+        elif isinstance(names, dict):
+            names = sorted(names, key=lambda name: int(names[name]))
         named = len(names) == len(set(names)) == size and all(name.isprintable() for name in names)
     except (KeyError, TypeError, ValueError, AttributeError):
         named = False
