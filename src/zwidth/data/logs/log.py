@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.logs.columns import Meaning, meaning_of, recognise
+from zwidth.data.logs.columns import recognise
+from zwidth.data.logs.meaning import Meaning, meaning_of
 from zwidth.data.logs.rows import Recording
 from zwidth.data.logs.runs import Clock, Cutter, Segment, clock_of
 from zwidth.data.logs.sensors import Grid, Unwrapper

@@ -8,8 +8,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from zwidth.data.logs.columns import QUANTITIES, meaning_of, recognise
+from zwidth.data.logs.columns import QUANTITIES, recognise
 from zwidth.data.logs.log import Log, contents, stated_period
+from zwidth.data.logs.meaning import meaning_of
 from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets, with_whole_stamps
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean

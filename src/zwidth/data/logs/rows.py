@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.columns import Meaning
+from zwidth.data.logs.meaning import Meaning
 from zwidth.data.logs.table import PIECE, Finding, Table, readable
 from zwidth.errors import InputError
 
