@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth.data.logs.read import log_of, opened
 from zwidth.data.logs.text import text_table
 
 ROWS = [
@@ -138,23 +139,92 @@ def test_what_is_more_than_a_second_is_no_rest_of_one(tmp_path):
         zw.read_log(path)
 
 
-def test_a_long_table_is_refused_with_what_it_is(tmp_path):
-    path = tmp_path / "long.csv"
-    lines = [f"{t},/arm/position,{x}\n{t},/arm/force,{f}\n" for t, x, f in ROWS]
-    path.write_text("timestamp,topic,value\n" + "".join(lines), encoding="utf-8")
-    with pytest.raises(zw.InputError, match=r'column "value" holds 2 quantities, .*columns="topic"'):
-        zw.read_log(path)
-    path.write_text("timestamp,name,value\n" + "".join(lines[:1] * 9).replace("force", "position"))
-    assert list(text_table(path).units) == ["timestamp", "name", "value"]  # one alone is a table
+LONG = {
+    "in turn": ("time_s,topic,value", ["{t},/arm/position,{x}", "{t},/arm/force,{f}"]),
+    "a little later": ("time_s;name;value", ["{t};/arm/position;{x}", "{t}09;/arm/force;{f}"]),
+    "with others, in words too": (
+        "time_s,key,value,seq",
+        ["{t},/mode,auto,1", "{t},/arm/position,{x},2", "{t},/arm/force,{f},3", "{t},/arm/battery,12,4"],
+    ),
+    "in two columns": ("time_s,topic,field,value,seq", ["{t},/arm,position,{x},7", "{t},/arm,force,{f},7"]),
+    "of numbers": ("time_s,channel,value", ["{t},1,{x}", "{t},2,{f}"]),
+    "in columns": ("time_s,/arm/position,/arm/force", ["{t},{x},", "{t}04,,{f}"]),
+}
 
 
-def test_two_topics_in_turn_are_refused_with_what_to_do(tmp_path):
+@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("one_after_the_other", [False, True])
+def test_topics_in_rows_of_their_own_are_columns(name, one_after_the_other, tmp_path):
+    """A row for each number, in turn or topic by topic, is the log of a table; what is left out is told."""
+    path, plain, (head, lines) = tmp_path / "long.csv", tmp_path / "plain.csv", LONG[name]
+    plain.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    said = [[line.format(t=t, x=x, f=f) + "\n" for line in lines] for t, x, f in ROWS]
+    told = zip(*said, strict=True) if one_after_the_other else said
+    path.write_text(head + "\n" + "".join(map("".join, told)), encoding="utf-8")
+    topics = {"in two columns": ("/arm.position", "/arm.force"), "of numbers": ("1", "2")}
+    position, force = topics.get(name, ("/arm/position", "/arm/force"))
+    given = {
+        "columns": {"position": position, "hand_force": force},
+        "units": {"position": "mm", "hand_force": "N"},
+    }
+    log, right = zw.read_log(path, **given), zw.read_log(plain)
+    assert log.sample_period == right.sample_period
+    for one, other in zip(log.blocks(), right.blocks(), strict=True):
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.hand_force, other.hand_force)
+    left = {"with others, in words too": [1200]}.get(name, [])
+    assert [f.samples for f in log.findings if f.kind == "topics left out"] == left
+    assert [f.samples for f in log.findings if f.kind == "rows in turn"] == [0]
+
+
+def test_numbers_of_a_topic_that_no_sample_has_are_counted(tmp_path):
+    path = tmp_path / "log.csv"
+    lines = [f"{t},{x},\n" + f"{t}01,,{f}\n" * (k % 100 > 0) for k, (t, x, f) in enumerate(ROWS)]
+    path.write_text(
+        NAMES + "\n" + "".join(lines) + "".join(f"9.{k},,1\n" for k in range(7)), encoding="utf-8"
+    )
+    log = zw.read_log(path)
+    assert (log.samples, log.runs) == (594, 6)
+    assert [f.samples for f in log.findings if f.kind == "rows in turn"] == [7]
+
+
+def test_topics_between_each_other_are_refused_with_the_rule(tmp_path):
+    """Half a period is the difference between a delay and none."""
     path = tmp_path / "log.csv"
     lines = [f"{t},{x},\n{t}5,,{f}\n" for t, x, f in ROWS]
     path.write_text(NAMES + "\n" + "".join(lines), encoding="utf-8")
-    with pytest.raises(zw.InputError, match=r'in all of "time_s", "position_mm", "force_N"; .*ffill'):
+    with pytest.raises(
+        zw.InputError, match=r'"force_N" stands in other rows, 0.5 periods .* up to 0.1 is read'
+    ):
         zw.read_log(path)
     assert zw.read_log(path, columns={"hand_force": None}).samples == 600
+    path.write_text("position_mm,force_N\n" + "".join(f"{x},\n,{f}\n" for _, x, f in ROWS), encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r"fewer than two rows .* by a time"):
+        zw.read_log(path, sample_rate=1000)
+
+
+def test_one_topic_alone_is_a_table_and_one_in_words_is_refused(tmp_path):
+    path = tmp_path / "long.csv"
+    lines = [f"{t},position,{x}\n" for t, x, _ in ROWS]
+    path.write_text("time_s,name,value\n" + "".join(lines), encoding="utf-8")
+    assert list(text_table(path).units) == ["time_s", "name", "value"]
+    path.write_text("time_s,name,value\n" + "".join(lines) + "0.6,mode,auto\n", encoding="utf-8")
+    assert list(text_table(path).units) == ["position", "mode", "time_s"]
+    with pytest.raises(zw.InputError, match='"mode" holds text'):
+        zw.read_log(path, columns={"position": "mode"}, units={"position": "mm"})
+
+
+def test_logs_of_one_table_have_one_clock(tmp_path):
+    """Also where they are dates, and a topic begins later."""
+    path = tmp_path / "long.csv"
+    lines = [
+        f"{1764300000 + k / 1000:.3f},{topic},{x}\n" for k, (_, x, _) in enumerate(ROWS) for topic in "qr"
+    ]
+    path.write_text("time_s,name,value\n" + "".join(lines[:600:2] + lines[600:]), encoding="utf-8")
+    with opened(path) as table:
+        logs = [log_of(table, columns={"position": q}, units={"position": "mm"}) for q in "qr"]
+    starts = [next(log.blocks()).time[0] for log in logs]
+    assert starts == [0.0, pytest.approx(0.3, abs=1e-6)]
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")])

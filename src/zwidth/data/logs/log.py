@@ -250,8 +250,8 @@ def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, 
     if start is None or start.time.size < 2:
         names = meaning.columns.values()
         raise InputError(
-            f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; where "
-            "topics are written in turn, give each row the newest of each, in pandas with table.ffill()"
+            f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; what "
+            "stands in other rows than the position is looked for at most half a period away, by a time"
         )
     clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
     cutter = Cutter(clock, table.source, tally)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,7 +28,7 @@ from zwidth.data.logs.cells import (
     stamps_of,
     text_of,
 )
-from zwidth.data.logs.layout import LABVIEW, Layout, is_comment, layout_of, split
+from zwidth.data.logs.layout import LABVIEW, Layout, columns_of_topics, is_comment, layout_of, split
 from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
@@ -44,14 +47,16 @@ def text_table(path: Path) -> Table:
         whole = not file.read(1)
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
-    _refuse_long_table(layout, path)
+    notes: dict[str, Finding] = {}
+    read = partial(_read, path, notes)
     table = Table(
         source=str(path),
         units={name: unit_in(layout, name) for name in layout.names},
-        read=lambda names: _read(path, layout, names, table.notes),
+        read=partial(read, layout),
         attributes=_attributes(layout),
+        notes=notes,
     )
-    return table
+    return wide(table, layout, read)
 
 
 def unit_in(layout: Layout, name: str) -> str | None:
@@ -70,21 +75,45 @@ def _refuse_one_column(layout: Layout, path: Path) -> None:
                 )
 
 
-_OF_NAMES = "topic name signal channel variable series key field metric label parameter"
+def wide(
+    table: Table, layout: Layout, read: Callable[[Layout, tuple[str, ...]], Iterator[tuple[Values, ...]]]
+) -> Table:
+    """A table of a row for each number, beside which its topic stands, as one with a column for each topic,
+    whose rows still hold one number; another table as it is."""
+    *labels, value = columns_of_topics(layout.names) or ("",)
+    labels = [n for n in labels if layout.kind(n) == "text" or all(map(str.isdecimal, layout.fields(n)))]
+    layout = replace(layout, words=(*labels, value))
+    found = read(layout, tuple(labels)) if labels else ()
+    topics = Counter(topic for columns in found for topic in _topics(columns))
+    if len(topics) < 2:
+        return table
+    others = {name: unit for name, unit in table.units.items() if name not in layout.words}
+    decimal = decimal_of(layout.fields(value)) or layout.decimal
+
+    def pivoted(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+        stamps = tuple(name for name in names if name in others)
+        wanted = [name for name in names if name not in others]
+        if wanted and (left := topics.total() - sum(topics[topic] for topic in wanted)):
+            text = f"a row for each number, by {listed(labels)}: {left} of other topics are left out"
+            table.notes["topics"] = Finding(kind="topics left out", text=text, samples=left)
+        for columns in read(layout, (*stamps, *layout.words)):
+            given = dict(zip(stamps, columns, strict=False))
+            of_row = np.array(_topics(columns[len(stamps) : -1]))
+            for topic in wanted:
+                found = [number(text or "", decimal) for text in columns[-1][of_row == topic]]
+                if None in found:
+                    raise InputError(f'{table.source}: "{topic}" holds text; only numbers are read')
+                given[topic] = np.full(of_row.size, np.nan)
+                given[topic][of_row == topic] = found
+            kept = np.isin(of_row, wanted or list(topics))
+            yield tuple(given[name][kept] for name in names)
+
+    return replace(table, units={**dict.fromkeys(topics), **others}, read=pivoted)
 
 
-def _refuse_long_table(layout: Layout, path: Path) -> None:
-    """One in which a column names the quantity whose number stands in another."""
-    bare = {name.strip("_ ").lower(): name for name in layout.names}
-    name = next((bare[word] for word in _OF_NAMES.split() if word in bare), "")
-    if name and "value" in bare and layout.kind(name) == "text":
-        found = list(dict.fromkeys(filter(None, layout.fields(name))))
-        if len(found) > 1:
-            raise InputError(
-                f'{path} is a long table: its column "{bare["value"]}" holds {len(found)} quantities, '
-                f'{listed(found)}, by "{name}"; make a column of each, in pandas with '
-                f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{bare["value"]}")'
-            )
+def _topics(columns: tuple[Values, ...]) -> list[str]:
+    """What each row names, in one column or in several."""
+    return [".".join(filter(None, parts)) for parts in zip(*columns, strict=True)]
 
 
 def _attributes(layout: Layout) -> dict[str, Any]:
@@ -99,7 +128,7 @@ def _attributes(layout: Layout) -> dict[str, Any]:
 
 
 def _read(
-    path: Path, layout: Layout, names: tuple[str, ...], notes: dict[str, Finding]
+    path: Path, notes: dict[str, Finding], layout: Layout, names: tuple[str, ...]
 ) -> Iterator[tuple[Values, ...]]:
     parser = Parser(str(path), layout, names)
     with opened_text(path) as file:
@@ -136,7 +165,7 @@ class Parser:
         self.unfinished = False
         letters = re.sub(r"[^a-zA-Z]|[eEdDnNaAiIfF]", "", layout.header)
         self._letter = letters[:1].encode()  # in the header, and in no number
-        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns")}
+        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns"), "words": pa.string()}
         for name in names:
             if layout.kind(name) == "text":
                 raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
@@ -246,10 +275,11 @@ class Parser:
 
 
 def _numbers(column: pa.Array) -> Values:
-    if not column.null_count and not pa.types.is_timestamp(column.type):
+    words = pa.types.is_string(column.type)
+    if not column.null_count and not pa.types.is_timestamp(column.type) and not words:
         return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
     values: Values = column.to_numpy(zero_copy_only=False)
-    if values.dtype == np.object_:
+    if values.dtype == np.object_ and not words:
         return values.astype(np.float64)
     return values
 
@@ -317,6 +347,8 @@ class Sheet:
     def _column(self, name: str, fields: list[str]) -> list[object]:
         """What each cell says; None where it is something else."""
         kind = self.layout.kind(name)
+        if kind == "words":
+            return list(fields)
         if kind == "clock":
             return [float("nan") if is_nothing(field) else clock(field) for field in fields]
         if kind in ("calendar", "date"):
@@ -350,8 +382,8 @@ class Sheet:
 
     def _values(self, name: str, column: list[object]) -> Values:
         kind = self.layout.kind(name)
-        if kind in ("calendar", "date"):
-            return np.array(column, dtype="datetime64[ns]")
+        if kind in ("calendar", "date", "words"):
+            return np.array(column, dtype=object if kind == "words" else "datetime64[ns]")
         values = np.array(column, dtype=float)
         if kind == "clock" and values.size:
             values = past_midnight(values, self._last[name])
