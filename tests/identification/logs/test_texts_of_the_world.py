@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -102,6 +104,62 @@ def test_a_name_that_comes_late_is_no_part_of_the_table(tmp_path):
     assert [f.samples for f in zw.read_log(path).findings if f.kind == "broken rows"] == [5]
     path.write_text(text + "time_s:1,mode:3\n" * 50, encoding="utf-8")
     with pytest.raises(zw.InputError, match="it is no table"):
+        zw.read_log(path)
+
+
+MONITORS = {
+    "Arduino": "{s} -> {x},{f}",
+    "PlatformIO": "{s} > {x}\t{f}",
+    "spaces": "{s} -> {x} {f}",
+    "names above": "{s} -> {x};{f}",
+    "names in each line": "{s} -> column 2:{x} column 3:{f}",
+    "JSON": '{s} -> {{"column 2": {x}, "column 3": {f}}}',
+}
+
+
+@pytest.mark.parametrize("name", MONITORS)
+def test_lines_behind_the_time_of_a_monitor(name, tmp_path):
+    """That time is a column, which goes on past midnight; a line of names may stand above."""
+    path, plain = tmp_path / "monitor.txt", tmp_path / "plain.csv"
+    stamps = [f"23:59:59.{k}" for k in range(800, 1000)] + [f"0:0:00.{k:03d}" for k in range(400)]
+    lines = [MONITORS[name].format(s=s, x=x, f=f) for s, (_, x, f) in zip(stamps, ROWS, strict=True)]
+    lines[:0] = ["23:59:59.700 -> column 2;column 3"] * (name == "names above")
+    path.write_text("\r\n".join([*lines, ""]), encoding="utf-8")
+    plain.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    columns = {"position": "column 2", "hand_force": "column 3"}
+    log = zw.read_log(path, columns=columns, units={"position": "mm", "hand_force": "N"})
+    assert (log.samples, log.runs, log.sample_period) == (600, 1, 1e-3)
+    for one, other in zip(log.blocks(), zw.read_log(plain).blocks(), strict=True):
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.hand_force, other.hand_force)
+
+
+SAMPLES = [{"time_s": float(t), "state": {"position_mm": float(x)}, "force_N": float(f)} for t, x, f in ROWS]
+WHOLES = {
+    "alone": (SAMPLES, None),
+    "beside settings": ({"mass": 1.2, "motor": "a", "entries": SAMPLES}, '"mass", "motor" left out'),
+    "deeper": (
+        {"log": {"rows": SAMPLES, "marks": [{"a": 1}, {"a": 2}]}},
+        '"log.rows" is read; "log.marks" left out',
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WHOLES)
+@pytest.mark.parametrize("indent", [None, 2])
+def test_a_list_of_samples_in_json(name, indent, tmp_path):
+    """In one line or in many; what else stands there is told."""
+    path, plain, (whole, left) = tmp_path / "log.json", tmp_path / "plain.csv", WHOLES[name]
+    path.write_text(json.dumps(whole, indent=indent), encoding="utf-8")
+    plain.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    log, right = zw.read_log(path), zw.read_log(plain)
+    for one, other in zip(log.blocks(), right.blocks(), strict=True):
+        assert all(map(np.array_equal, one[1:4], other[1:4]))
+    said = [finding.text for finding in log.findings if finding.kind == "left out"]
+    assert len(said) == (left is not None)
+    assert all(text.endswith(left) for text in said)
+    path.write_text(json.dumps(whole, indent=indent)[:-9], encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r"begins as JSON and is none: .* copied whole"):
         zw.read_log(path)
 
 

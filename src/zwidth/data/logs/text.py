@@ -29,6 +29,7 @@ from zwidth.data.logs.cells import (
     text_of,
 )
 from zwidth.data.logs.layout import LABVIEW, Layout, columns_of_topics, is_comment, layout_of, split
+from zwidth.data.logs.records import Records
 from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
@@ -45,9 +46,10 @@ def text_table(path: Path) -> Table:
     with opened_text(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)
+        left = file.left_out if isinstance(file, Records) else ""
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
-    notes: dict[str, Finding] = {}
+    notes = {"left out": Finding(kind="left out", text=left)} if left else {}
     read = partial(_read, path, notes)
     table = Table(
         source=str(path),
