@@ -35,11 +35,6 @@ HEADS = {
         "",
         {"x-axis": "second", "1": "Volt", "2": "Ampere"},
     ),
-    "a count and its step": (
-        "X,CH1,CH2,Start,Increment\nSequence,Volt,Volt,-3.0E-03,1.0E-03\n",
-        ",,",
-        {"X": None, "CH1": "Volt", "CH2": "Volt", "Start": None, "Increment": None},
-    ),
     "numbers beside names and units": (
         "spec A,spec A,spec A,,,\nTime,Position,Force,,20,80\ns,mm,N,,0.1,79\n",
         ",,,",
@@ -68,6 +63,28 @@ def test_a_first_column_in_seconds_is_the_time(tmp_path):
     path.write_text("Source,CH1,CH2\nSecond,Volt,Volt\n" + rows(), encoding="utf-8")
     log = zw.read_log(path, columns={"position": "CH1"}, scale={"position": "1 mm/V"})
     assert log.sample_period == 1e-3
+
+
+@pytest.mark.parametrize("end", ["", ",", ",,"])
+@pytest.mark.parametrize("unit", ["Volt", "VOLT", "Unknown"])
+def test_a_sample_that_is_counted_is_at_start_and_increments(end, unit, tmp_path):
+    """As oscilloscopes of Rigol write it; what is lost shows in the count."""
+    path = tmp_path / "log.csv"
+    head = f"X,CH1,CH2,Start,Increment,\nSequence,Volt,{unit},-3.000000E-01,2.000000E-03\n"
+    lines = [f"{k},{x},{f}{end}\n" for k, (_, x, f) in enumerate(ROWS) if k not in (200, 201)]
+    path.write_text(head + "".join(lines), encoding="utf-8")
+    units = text_table(path).units
+    assert {name: units[name] for name in ("time", "CH1", "CH2")} == {
+        "time": "s",
+        "CH1": "Volt",
+        "CH2": None if unit == "Unknown" else unit,
+    }
+    log = zw.read_log(path, columns={"position": "CH1"}, scale={"position": "1 mm/V"})
+    blocks = list(log.blocks())
+    assert (log.sample_period, [block.time.size for block in blocks]) == (2e-3, [200, 398])
+    assert [block.time[0] for block in blocks] == [-0.3, pytest.approx(0.104)]
+    with pytest.raises(zw.InputError, match="no column is known to be the position"):
+        zw.read_log(path)
 
 
 RECORDS = {

@@ -56,6 +56,8 @@ class Layout:
     sample: Sample
     comments: tuple[str, ...]
     """Lines before the numbers that are comments."""
+    counted: tuple[float, float] | None = None
+    """[s] Where the first column counts samples: the time of number 0, and from one to the next."""
     words: tuple[str, ...] = ()
     """Columns that are read as they stand."""
 
@@ -258,11 +260,16 @@ def laid_out(
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]
     filled = [any(row[k] for row in sample) for k in range(columns)]
+    counted = _counted(plain, delimiter)
     header, names, units_line = _header(plain, comments, delimiter, filled)
+    if counted:
+        names[0] = "time"
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
     units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
+    if counted:
+        units["time"] = "s"
     fields = [field for row in sample for field in row]
     commas = delimiter != "," and any("," in field for field in fields)
     return Layout(
@@ -274,7 +281,19 @@ def laid_out(
         header=header if header in plain else "",
         sample=sample,
         comments=comments,
+        counted=counted,
     )
+
+
+def _counted(plain: list[str], delimiter: str) -> tuple[float, float] | None:
+    """As of `Layout`: oscilloscopes of Rigol write both behind the names and the units, which are left."""
+    names, below = ([split(line, delimiter) for line in plain[-2:]] + [[], []])[:2]
+    said = dict(zip(names, below, strict=False))
+    if not {"Start", "Increment"} <= said.keys() or not are_plain((said["Start"], said["Increment"])):
+        return None
+    known = [unit if is_unit(unit) else "" for unit in below[: names.index("Start")]]
+    plain[-2:] = [delimiter.join(names[: len(known)]), *[delimiter.join(known)] * any(known)]
+    return float(said["Start"]), float(said["Increment"])
 
 
 def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:

@@ -190,7 +190,12 @@ class Parser:
                     f"{self.source}: {self.broken} of {self.rows + self.broken} rows have another number of "
                     f"columns than {len(self.layout.names)}; it is no table"
                 )
-            yield from parts
+            start, step = self.layout.counted or (0.0, 1.0)
+            count = self.layout.names[0] if self.layout.counted else None
+            for part in parts:
+                yield tuple(
+                    start + step * v if n == count else v for n, v in zip(self.names, part, strict=True)
+                )
 
     def _quickly(self, lines: bytes) -> list[tuple[Values, ...]] | None:
         """None where a cell is not written as the quick reader has it."""
