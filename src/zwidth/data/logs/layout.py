@@ -268,8 +268,7 @@ def laid_out(
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
     units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
-    if counted:
-        units["time"] = "s"
+    units |= {"time": "s"} if counted else {}
     fields = [field for row in sample for field in row]
     commas = delimiter != "," and any("," in field for field in fields)
     return Layout(

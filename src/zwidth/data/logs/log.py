@@ -31,7 +31,7 @@ from zwidth.data.logs.survey import (
     position_findings,
     refuse_survey,
 )
-from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, listed
+from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, check_lengths, listed
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import quantity_unit
@@ -364,10 +364,7 @@ def _vector(name: str, values: Any) -> Values:
 def _table(
     arrays: dict[str, Values], units: Mapping[str, str | None], attributes: Mapping[str, Any]
 ) -> Table:
-    sizes = {name: values.size for name, values in arrays.items()}
-    if len(set(sizes.values())) > 1:
-        said = ", ".join(f"{name} {size}" for name, size in sizes.items())
-        raise InputError(f"every column needs as many samples, got {said}")
+    check_lengths("arrays", {name: values.size for name, values in arrays.items()})
 
     def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
         yield tuple(arrays[name] for name in names)

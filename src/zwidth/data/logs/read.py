@@ -143,18 +143,13 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         from zwidth.data.logs.parquet import parquet_table
 
         return parquet_table(path)
-    if start[:8] == b"\x89HDF\r\n\x1a\n" or start[512:520] == b"\x89HDF\r\n\x1a\n":
-        from zwidth.data.logs.scientific import hdf5_table
+    is_hdf5 = b"\x89HDF\r\n\x1a\n" in (start[:8], start[512:520])
+    if is_hdf5 or start.startswith((b"\x93NUMPY", b"MATLAB")) or path.suffix.lower() == ".mat":
+        from zwidth.data.logs.scientific import hdf5_table, matlab_table, numpy_table
 
-        return hdf5_table(path)
-    if start[:6] == b"\x93NUMPY":
-        from zwidth.data.logs.scientific import numpy_table
-
-        return numpy_table(path)
-    if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
-        from zwidth.data.logs.scientific import matlab_table
-
-        return matlab_table(path)
+        if is_hdf5:
+            return hdf5_table(path)
+        return numpy_table(path) if start.startswith(b"\x93NUMPY") else matlab_table(path)
     if start.startswith(b"\x89MCAP"):
         from zwidth.data.logs.served import mcap_head, served_table
 

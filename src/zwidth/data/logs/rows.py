@@ -60,37 +60,29 @@ class Recording:
     def __init__(self, table: Table, meaning: Meaning, period: float | None) -> None:
         self.table, self.meaning, self.period = table, meaning, period
         self._kept: list[Rows] | None = None
-        self._fits = True
 
     def rows(self, tally: Counter[str] | None = None) -> Iterator[Rows]:
         """Every finite row, in pieces of at most `PIECE` but for the first; `tally` counts the others."""
         if self._kept is not None:
             yield from self._kept
             return
-        kept, size = [], 0
+        kept: list[Rows] = []
+        size = 0
         for piece in self._opened(Counter() if tally is None else tally):
             size += sum(column.nbytes for column in piece if column is not None)
+            kept.append(piece)
             if size > MEMORY:
-                self._fits = False
-            if self._fits:
-                kept.append(piece)
-            else:
                 kept.clear()
             yield piece
-        if self._fits:
-            self._kept = kept
+        self._kept = kept or None
 
     def _opened(self, tally: Counter[str]) -> Iterator[Rows]:
         """The pieces, enough of them joined at the beginning to read the clock from."""
         with readable(self.table.source):
             pieces = self._read(tally)
-            start = next(pieces, None)
-            while start is not None and start.time.size < _FIRST:
-                more = next(pieces, None)
-                if more is None:
-                    break
-                start = joined(start, more)
-            if start is not None:
+            if start := next(pieces, None):
+                while start.time.size < _FIRST and (more := next(pieces, None)):
+                    start = joined(start, more)
                 yield start
             yield from pieces
 
@@ -135,10 +127,8 @@ class Recording:
         time = columns["time"].astype(np.int64) if columns["time"].dtype.kind == "M" else columns["time"]
         samples = np.flatnonzero(np.isfinite(columns["position"]))
         for quantity in [q for q in columns if q not in ("time", "position")]:
-            values, rows = (
-                columns[quantity],
-                np.flatnonzero(np.isfinite(columns[quantity]) & np.isfinite(time)),
-            )
+            values = columns[quantity]
+            rows = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
             near = nearest(time[samples], time[rows], rows.astype(float))
             taken, sample = near[np.isfinite(near)].astype(int), samples[np.isfinite(near)]
             columns[quantity] = np.full(time.size, np.nan)
@@ -185,11 +175,7 @@ class Recording:
 
 def _in_turn(columns: _Columns) -> bool:
     """Whether most rows with a position lack something else, and a time says where to look for it."""
-    if (
-        len(columns) < 3
-        or "time" not in columns
-        or any(v.dtype.kind not in "fiubM" for v in columns.values())
-    ):
+    if len(columns) < 3 or "time" not in columns:
         return False
     whole = np.logical_and.reduce([np.isfinite(values) for values in columns.values()])
     return bool(2 * np.count_nonzero(whole) <= np.count_nonzero(np.isfinite(columns["position"])))

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -41,6 +41,9 @@ _UNITS = {"date": "ns", "calendar": "ns", "clock": "s"}
 _MOST_BROKEN = 0.01
 """Share of rows of another length beyond which the file is not what it seems."""
 
+MOST_NOTES = 50
+"""Lines of text below a table; more are no notes."""
+
 
 def text_table(path: Path) -> Table:
     with opened_text(path) as file:
@@ -67,14 +70,12 @@ def unit_in(layout: Layout, name: str) -> str | None:
 
 
 def _refuse_one_column(layout: Layout, path: Path) -> None:
-    if len(layout.names) == 1 and layout.header:
-        for sign, name in ((",", "comma"), (";", "semicolon"), ("\t", "tab"), ("|", "|")):
-            fields = layout.header.count(sign) + 1
-            if fields > 1:
-                raise InputError(
-                    f"{path}: the header splits into {fields} names at each {name}, but the rows do not; "
-                    "use one delimiter throughout"
-                )
+    for sign, name in ((",", "comma"), (";", "semicolon"), ("\t", "tab"), ("|", "|")):
+        if len(layout.names) == 1 and (more := layout.header.count(sign)):
+            raise InputError(
+                f"{path}: the header splits into {more + 1} names at each {name}, but the rows do not; "
+                "use one delimiter throughout"
+            )
 
 
 def wide(
@@ -119,14 +120,11 @@ def _topics(columns: tuple[Values, ...]) -> list[str]:
 
 
 def _attributes(layout: Layout) -> dict[str, Any]:
-    for line in layout.comments:
-        if line.startswith("# {"):
-            try:
-                found = json.loads(line[2:])
-            except ValueError:
-                return {}
-            return found if isinstance(found, dict) else {}
-    return {}
+    try:
+        found = json.loads(next((line[2:] for line in layout.comments if line.startswith("# {")), "{}"))
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def _read(
@@ -172,9 +170,10 @@ class Parser:
             if layout.kind(name) == "text":
                 raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
         self.types = {name: kinds[kind] for name in names if (kind := layout.kind(name)) in kinds}
-        self._sheet = Sheet(source, layout, names)
         self._by_cells = len(self.types) < len(set(names))
-        self.notes, self.first_note = 0, ""
+        self._decimal = {name: decimal_of(layout.fields(name)) or layout.decimal for name in names}
+        self._last = dict.fromkeys(names, float("nan"))
+        self.notes: list[str] = []
 
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
         if not lines:
@@ -184,7 +183,7 @@ class Parser:
             parts = self._quickly(cleaned)
             if parts is None:
                 self._by_cells = True
-                parts = self._cell_by_cell(cleaned)
+                parts = [self._cell_by_cell(cleaned.decode())]
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
                     f"{self.source}: {self.broken} of {self.rows + self.broken} rows have another number of "
@@ -210,14 +209,6 @@ class Parser:
         self.rows += table.num_rows
         return [tuple(_numbers(part.column(name)) for name in self.names) for part in table.to_batches()]
 
-    def _cell_by_cell(self, lines: bytes) -> list[tuple[Values, ...]]:
-        piece = self._sheet.read(lines.decode(), self._line)
-        self.rows += piece.columns[0].size
-        self.broken += piece.broken
-        self.notes += piece.notes
-        self.first_note = self.first_note or piece.first_note
-        return [piece.columns]
-
     def report(self, notes: dict[str, Finding]) -> None:
         if self.unfinished:
             text = "the last line has no end, it may be cut off; it is left out"
@@ -227,8 +218,8 @@ class Parser:
             text = f"{self.broken} rows have another number of columns than {columns}; they are left out"
             notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
         if self.notes:
-            lines = "1 line" if self.notes == 1 else f"{self.notes} lines"
-            text = f'{lines} of text below the table left out: "{self.first_note}"'
+            lines = "1 line" if len(self.notes) == 1 else f"{len(self.notes)} lines"
+            text = f'{lines} of text below the table left out: "{self.notes[0]}"'
             notes["text"] = Finding(kind="text", text=text)
         if self.headers:
             text = (
@@ -272,61 +263,24 @@ class Parser:
             lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
         return lines
 
-    @property
-    def _line(self) -> int:
-        return self.layout.skipped + self.rows + self.broken
-
     def _example(self, name: str) -> str:
         fields = self.layout.fields(name)
         return next((field for field in fields if not (is_number(field) or is_nothing(field))), "")[:40]
 
+    # Rows of a spreadsheet cell by cell, where they are not written plainly enough for the quick reader.
+    #
+    # Thousands in groups, columns with different decimal signs, times of day, dates as people write them,
+    # words for a missing number, lines of text below the table.  One between numbers is refused: nobody knows
+    # what it was.
 
-def _numbers(column: pa.Array) -> Values:
-    words = pa.types.is_string(column.type)
-    if not column.null_count and not pa.types.is_timestamp(column.type) and not words:
-        return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
-    values: Values = column.to_numpy(zero_copy_only=False)
-    if values.dtype == np.object_ and not words:
-        return values.astype(np.float64)
-    return values
-
-
-# Rows of a spreadsheet cell by cell, where they are not written plainly enough for the quick reader.
-#
-# Thousands in groups, columns with different decimal signs, times of day, dates as people write them, words
-# for a missing number, lines of text below the table.  A line of text between numbers is refused: nobody
-# knows what it was.
-
-MOST_NOTES = 50
-"""Lines of text below a table; more are no notes."""
-
-
-class Piece(NamedTuple):
-    """Columns, how many rows were of another length, and the lines of text below, the first of them."""
-
-    columns: tuple[Values, ...]
-    broken: int
-    notes: int
-    first_note: str
-
-
-class Sheet:
-    """The cells of some columns; how a column is written is decided once."""
-
-    def __init__(self, source: str, layout: Layout, names: tuple[str, ...]) -> None:
-        self.source, self.layout, self.names = source, layout, names
-        self._decimal = {name: decimal_of(layout.fields(name)) or layout.decimal for name in names}
-        self._last = dict.fromkeys(names, float("nan"))
-
-    def read(self, lines: str, before: int) -> Piece:
-        """The columns of whole lines, which come after so many of the file."""
-        rows, broken = [], 0
+    def _cell_by_cell(self, lines: str) -> tuple[Values, ...]:
+        rows, before = [], self.layout.skipped + self.rows + self.broken
         for k, line in enumerate(lines.splitlines()):
             if not line.strip() or is_comment(line):
                 continue
             fields = self._fitted(split(line, self.layout.delimiter))
             if fields is None:
-                broken += 1
+                self.broken += 1
             else:
                 rows.append((before + k + 1, fields))
         wanted = [self.layout.names.index(name) for name in self.names]
@@ -335,14 +289,9 @@ class Sheet:
             for name, k in zip(self.names, wanted, strict=True)
         ]
         end = self._end(rows, columns, wanted)
-        notes = [fields for _, fields in rows[end:] if any(fields)]
-        note = " ".join(field for field in notes[0] if field)[:60] if notes else ""
-        return Piece(
-            tuple(self._values(name, column[:end]) for name, column in zip(self.names, columns, strict=True)),
-            broken,
-            len(notes),
-            note,
-        )
+        self.rows += end
+        self.notes += [" ".join(filter(None, fields))[:60] for _, fields in rows[end:] if any(fields)]
+        return tuple(self._values(n, column[:end]) for n, column in zip(self.names, columns, strict=True))
 
     def _fitted(self, fields: list[str]) -> list[str] | None:
         """As many as there are names: empty ones at the end do not count."""
@@ -396,3 +345,13 @@ class Sheet:
             values = past_midnight(values, self._last[name])
             self._last[name] = float(values[-1])
         return values
+
+
+def _numbers(column: pa.Array) -> Values:
+    words = pa.types.is_string(column.type)
+    if not column.null_count and not pa.types.is_timestamp(column.type) and not words:
+        return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
+    values: Values = column.to_numpy(zero_copy_only=False)
+    if values.dtype == np.object_ and not words:
+        return values.astype(np.float64)
+    return values
