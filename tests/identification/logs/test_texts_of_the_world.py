@@ -273,6 +273,9 @@ def test_topics_between_each_other_are_refused_with_the_rule(tmp_path):
     ):
         zw.read_log(path)
     assert zw.read_log(path, columns={"hand_force": None}).samples == 600
+    path.write_text(NAMES + "\n" + 2 * "".join(f"{t},{x},\n{t},,{f}\n" for t, x, f in ROWS), encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r'time starts again in "position_mm".* cut the file'):
+        zw.read_log(path)
     path.write_text("position_mm,force_N\n" + "".join(f"{x},\n,{f}\n" for _, x, f in ROWS), encoding="utf-8")
     with pytest.raises(zw.InputError, match=r"fewer than two rows .* by a time"):
         zw.read_log(path, sample_rate=1000)

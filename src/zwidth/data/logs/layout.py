@@ -262,8 +262,7 @@ def laid_out(
     filled = [any(row[k] for row in sample) for k in range(columns)]
     counted = _counted(plain, delimiter)
     header, names, units_line = _header(plain, comments, delimiter, filled)
-    if counted:
-        names[0] = "time"
+    names = ["time", *names[1:]] if counted else names
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])

@@ -42,8 +42,11 @@ def meaning_of(
     motion: str | None = None,
 ) -> Meaning:
     """Factors to SI of every column, and whether the device turns."""
-    _check_keys("units", units, columns)
-    _check_keys("scale", scale, columns)
+    for what, given in (("units", units), ("scale", scale)):
+        for key in given or ():
+            check_quantity(what, key)
+            if key not in columns:
+                raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
     scale = _numbers_or_texts(scale or {})
     _refuse_other_units(table, columns, units or {})
     stated = {q: _stated((units or {}).get(q), q) or _own_unit(table, c, q) for q, c in columns.items()}
@@ -75,13 +78,6 @@ def meaning_of(
     return Meaning(
         columns=columns, factors=factors, motion="rotary" if turning else "linear", resolution=step
     )
-
-
-def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
-    for key in given or {}:
-        check_quantity(what, key)
-        if key not in columns:
-            raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
 
 
 def _refuse_other_units(table: Table, columns: Mapping[str, str], units: Mapping[str, str]) -> None:

@@ -97,7 +97,7 @@ class Recording:
             more["anchor"] = anchor
         origin = self.table.origin
         pieces = self.table.read((*names, *more.values()))
-        for columns in self._side_by_side(dict(zip((*quantities, *more), p, strict=True)) for p in pieces):
+        for columns in self._whole(dict(zip((*quantities, *more), p, strict=True)) for p in pieces):
             if simulated:
                 at_samples = columns.pop("sampled") != 0
                 if not at_samples.all():
@@ -112,40 +112,15 @@ class Recording:
                 part = {q: v[k : k + PIECE] for q, v in columns.items()}
                 yield self._finite(self._scaled(part, tally["rows"]), tally)
 
-    def _side_by_side(self, pieces: Iterator[_Columns]) -> Iterator[_Columns]:
-        """Rows as they are; where topics are written in turn, those with a position, with what is nearest."""
+    def _whole(self, pieces: Iterator[_Columns]) -> Iterator[_Columns]:
+        """Rows with what belongs to them, whether it stands there or in others."""
         first = next(pieces, {})
         if _in_turn(first):
             parts = [first, *pieces]
             first = {quantity: np.concatenate([part[quantity] for part in parts]) for quantity in first}
         if first:
-            yield self._nearest(first) if _in_turn(first) else first
+            yield side_by_side(self.table, self.meaning.columns, first)
         yield from pieces
-
-    def _nearest(self, columns: _Columns) -> _Columns:
-        """Of every topic but the position; refused where a number may be that of another sample."""
-        time = columns["time"].astype(np.int64) if columns["time"].dtype.kind == "M" else columns["time"]
-        samples = np.flatnonzero(np.isfinite(columns["position"]))
-        for quantity in [q for q in columns if q not in ("time", "position")]:
-            values = columns[quantity]
-            rows = np.flatnonzero(np.isfinite(values) & np.isfinite(time))
-            near = nearest(time[samples], time[rows], rows.astype(float))
-            taken, sample = near[np.isfinite(near)].astype(int), samples[np.isfinite(near)]
-            columns[quantity] = np.full(time.size, np.nan)
-            columns[quantity][sample] = values[taken]
-            apart = np.abs(time[taken] - time[sample])
-            away = np.median(apart) / np.nanmedian(np.diff(time[samples])) if apart.size else 0.0
-            said = f'"{self.meaning.columns[quantity]}" stands in other rows, {away:.2g} periods from those'
-            if away > FARTHEST:
-                raise InputError(
-                    f"{self.table.source}: {said} of the position, and up to {FARTHEST} is read: damping and "
-                    "energy depend on whose sample a number is; leave it out, or give both one clock, as "
-                    "numpy.interp does"
-                )
-            left = rows.size - np.unique(taken).size
-            text = f"{said} of the position; the nearest is taken, {left} of {rows.size} are left out"
-            self.table.notes[quantity] = Finding(kind="rows in turn", text=text, samples=left)
-        return {quantity: values[samples] for quantity, values in columns.items()}
 
     def _scaled(self, columns: dict[str, Any], done: int) -> Rows:
         if "time" not in columns:
@@ -174,11 +149,44 @@ class Recording:
 
 
 def _in_turn(columns: _Columns) -> bool:
-    """Whether most rows with a position lack something else, and a time says where to look for it."""
+    """Whether most rows of the second lack something else, and the first is a time to look for it by."""
     if len(columns) < 3 or "time" not in columns:
         return False
-    whole = np.logical_and.reduce([np.isfinite(values) for values in columns.values()])
-    return bool(2 * np.count_nonzero(whole) <= np.count_nonzero(np.isfinite(columns["position"])))
+    finite = [np.isfinite(values) for values in columns.values()]
+    return bool(2 * np.count_nonzero(np.logical_and.reduce(finite)) <= np.count_nonzero(finite[1]))
+
+
+def side_by_side(table: Table, names: Mapping[str, str], columns: _Columns) -> _Columns:
+    """Whole columns as they are; of topics that are written in turn the rows of the second, which follows the
+    time, with the numbers nearest in time; refused where these may be of another sample."""
+    if not _in_turn(columns):
+        return columns
+    _, main, *others = columns
+    time = (columns["time"] - np.fmin.reduce(columns["time"])).astype(float)
+    whole = {name: values[np.isfinite(columns[main])] for name, values in columns.items()}
+    stamps = time[np.isfinite(columns[main])]
+    period = np.nanmedian(np.diff(stamps)) if stamps.size > 1 else 1.0
+    if (np.diff(stamps) < -10 * period).any():
+        raise InputError(
+            f'{table.source}: time starts again in "{names[main]}", and by it is found what stands in other '
+            "rows; cut the file there"
+        )
+    for name in others:
+        rows = np.isfinite(columns[name]) & np.isfinite(time)
+        whole[name] = nearest(stamps, time[rows], columns[name][rows])
+        at = nearest(stamps, time[rows], time[rows])
+        found = np.isfinite(at)
+        away = np.median(np.abs(at - stamps)[found]) / period if found.any() else 0.0
+        said = f'"{names[name]}" stands in other rows, {away:.2g} periods from those of "{names[main]}"'
+        if away > FARTHEST:
+            raise InputError(
+                f"{table.source}: {said}, and up to {FARTHEST} is read: damping and energy depend on whose "
+                "sample a number is; leave it out, or give both one clock, as numpy.interp does"
+            )
+        left = int(rows.sum()) - np.unique(at[found]).size
+        text = f"{said}; the nearest is taken, {left} of {rows.sum()} are left out"
+        table.notes[name] = Finding(kind="rows in turn", text=text, samples=left)
+    return whole
 
 
 def _times(values: NDArray[Any], factor: float) -> Array:

@@ -176,8 +176,6 @@ class Parser:
         self.notes: list[str] = []
 
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
-        if not lines:
-            return
         cleaned = self._cleaned(lines)
         if cleaned.strip():
             parts = self._quickly(cleaned)
@@ -192,9 +190,8 @@ class Parser:
             start, step = self.layout.counted or (0.0, 1.0)
             count = self.layout.names[0] if self.layout.counted else None
             for part in parts:
-                yield tuple(
-                    start + step * v if n == count else v for n, v in zip(self.names, part, strict=True)
-                )
+                named = zip(self.names, part, strict=True)
+                yield tuple(start + step * v if name == count else v for name, v in named)
 
     def _quickly(self, lines: bytes) -> list[tuple[Values, ...]] | None:
         """None where a cell is not written as the quick reader has it."""
