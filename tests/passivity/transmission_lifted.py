@@ -1,0 +1,105 @@
+"""Motor, transmission and hand by another road: one sample period in the time domain, cut into pieces.
+
+The hand's side moves with one speed in each piece, and the next period is the last one times e^{jθ}; between
+them the motor moves exactly.  What the hand puts in is a Hermitian form of the speeds, its least eigenvalue
+< 0 where it gains, and a hair above the truth where it does not, less with every piece more.  T = 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.optimize import minimize_scalar
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Plant:
+    """m, b₁, k, c and b₂ with T = 1 s; N and D ascending in 1/z; the delay in samples."""
+
+    mass: float
+    damping: float
+    stiffness: float
+    inside: float
+    handle_damping: float
+    numerator: tuple[float, ...]
+    denominator: tuple[float, ...]
+    delay: float
+    at_handle: bool
+
+    def force(self, z: complex) -> complex:
+        """H(z)."""
+        return complex(np.polyval(self.numerator[::-1], 1 / z) / np.polyval(self.denominator[::-1], 1 / z))
+
+    def moved(self, time: float) -> Array:
+        """After it: x₁, v₁, x, and ∫ of the cable's force, of x₁, v₁, x, 0 and of the hand's speed and F."""
+        m, b, k, c = self.mass, self.damping, self.stiffness, self.inside
+        rates = np.zeros((6, 6))
+        rates[0, 1] = rates[2, 4] = 1
+        rates[1] = np.array([-k, -b - c, k, 0, c, -1]) / m
+        rates[3] = [-k, -c, k, 0, c, 0]
+        return np.asarray(expm(rates * time)[:4])
+
+
+class Lifted:
+    """The form of the hand's speeds in one period."""
+
+    def __init__(self, plant: Plant, pieces: int) -> None:
+        self.plant = plant
+        part = plant.delay - int(plant.delay)
+        ends = np.unique(np.concatenate([np.linspace(0, 1, pieces + 1), [part]]))
+        ends = ends[np.concatenate([[True], np.diff(ends) > 1e-9])]
+        self.widths = np.diff(ends)
+        count = len(self.widths)
+        # columns: x₁, v₁, x at the start, the force before and after it changes, the speeds
+        state, work = np.eye(3, 5 + count), np.zeros((count, 5 + count))
+        moves = {width: plant.moved(width) for width in set(self.widths)}
+        for i, width in enumerate(self.widths):
+            move = moves[width]
+            late = ends[i] > part - 1e-9
+            inputs = np.zeros((2, 5 + count))
+            inputs[0, 5 + i] = inputs[1, 4 if late else 3] = 1
+            work[i] = move[3, :3] @ state + move[3, 4:] @ inputs
+            state = move[:3, :3] @ state + move[:3, 4:] @ inputs
+        self.state, self.work = state, work
+
+    def form(self, angle: float) -> Array:
+        """Of the speeds times the root of their time, at θ in (0, π]."""
+        plant, count, z = self.plant, len(self.widths), np.exp(1j * angle)
+        force = plant.force(z) * z ** -int(plant.delay)
+        of_speeds = np.zeros((5 + count, count), complex)
+        of_speeds[5:] = np.eye(count)
+        of_speeds[2] = self.widths / (z - 1)
+        of_start = np.zeros((5 + count, 2), complex)
+        of_start[0, 0] = of_start[1, 1] = 1
+        held = np.array([force / z, force])
+        if plant.at_handle:
+            of_speeds[3:5] = np.outer(held, of_speeds[2])
+        else:
+            of_start[3:5, 0] = held
+        end = self.state[:2]
+        start = np.linalg.solve(z * np.eye(2) - end @ of_start, end @ of_speeds)
+        power = self.work @ (of_speeds + of_start @ start)
+        scale = np.sqrt(self.widths)
+        power = power / np.outer(scale, scale) + plant.handle_damping * np.eye(count)
+        return (power + power.conj().T) / 2
+
+    def least(self, angle: float) -> float:
+        """The least eigenvalue."""
+        return float(np.linalg.eigvalsh(self.form(angle))[0])
+
+    def worst(self, angles: int = 60) -> tuple[float, float]:
+        """The least eigenvalue of all, and its θ."""
+        grid = np.concatenate([np.geomspace(1e-3, 0.04, 6), np.linspace(0.05, np.pi, angles)])
+        values = [self.least(angle) for angle in grid]
+        i = int(np.argmin(values))
+        low, high = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
+        found = minimize_scalar(self.least, bounds=(low, high), method="bounded", options={"xatol": 1e-7})
+        return min((values[i], float(grid[i])), (float(found.fun), float(found.x)))
+
+    def worst_speeds(self, angle: float) -> Array:
+        """Those of the least eigenvalue."""
+        return np.linalg.eigh(self.form(angle))[1][:, 0] / np.sqrt(self.widths)
