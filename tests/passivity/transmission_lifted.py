@@ -13,6 +13,8 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import minimize_scalar
 
+from zwidth.passivity.linear.transmission import Elastic
+
 Array = np.ndarray
 
 
@@ -29,6 +31,48 @@ class Plant:
     denominator: tuple[float, ...]
     delay: float
     at_handle: bool
+
+    @classmethod
+    def of(cls, elastic: Elastic) -> Plant:
+        """The one that is decided, its numbers rounded."""
+        loop, t = elastic.loop, elastic.loop.period
+        numbers = (
+            elastic.mass / t**2, loop.damping / t, elastic.stiffness,
+            elastic.damping / t, elastic.handle_damping / t,
+        )  # fmt: skip
+        law = (tuple(map(float, part)) for part in (loop.numerator, loop.denominator))
+        return cls(*map(float, numbers), *law, float(loop.whole_delay + loop.part_delay), elastic.at_handle)
+
+    @property
+    def growth(self) -> float:
+        """The largest factor in a period by which something grows or decays while the hand's side is held."""
+        whole, part = int(self.delay), self.delay - int(self.delay)
+        early, late = (self.moved(time)[:2] for time in (part, 1 - part))
+        order = max(len(self.numerator), len(self.denominator)) - 1
+        n, d = (np.pad(c, (0, order + 1 - len(c))) for c in (self.numerator, self.denominator))
+        # x₁, v₁; what the law keeps, in its transposed form; the forces that are on their way
+        count = 2 + order + whole + 1
+        step = np.zeros((count, count))
+        read = np.zeros(count)
+        read[0] = not self.at_handle
+        force = n[0] / d[0] * read
+        if order:
+            force = force + np.eye(count)[2]
+        for i in range(order):
+            following = np.eye(count)[3 + i] if i + 1 < order else np.zeros(count)
+            step[2 + i] = following + (n[i + 1] * read - d[i + 1] * force) / d[0]
+        waiting = [force, *np.eye(count)[2 + order :]]  # of this sample, of the one before, …
+        for i in range(whole + 1):
+            step[2 + order + i] = waiting[i]
+        step[:2] = late[:, :2] @ (early[:, :2] @ np.eye(2, count) + np.outer(early[:, 5], waiting[whole + 1]))
+        step[:2] += np.outer(late[:, 5], waiting[whole])
+        return float(max(abs(np.linalg.eigvals(step))))
+
+    @property
+    def at_rest(self) -> float:
+        """The stiffness that a hand feels that has come to rest."""
+        top, bottom = sum(self.numerator), sum(self.denominator)
+        return top / bottom if self.at_handle else self.stiffness * top / (self.stiffness * bottom + top)
 
     def force(self, z: complex) -> complex:
         """H(z)."""
@@ -47,21 +91,19 @@ class Plant:
 class Lifted:
     """The form of the hand's speeds in one period."""
 
-    def __init__(self, plant: Plant, pieces: int) -> None:
+    def __init__(self, plant: Plant, pieces: int, halvings: int = 0) -> None:
         self.plant = plant
         part = plant.delay - int(plant.delay)
-        ends = np.unique(np.concatenate([np.linspace(0, 1, pieces + 1), [part]]))
-        ends = ends[np.concatenate([[True], np.diff(ends) > 1e-9])]
-        self.widths = np.diff(ends)
+        counts = [int(np.ceil(pieces * share)) << halvings for share in (part, 1 - part)]
+        self.widths = np.repeat([part, 1 - part], counts) / np.repeat(np.maximum(counts, 1), counts)
         count = len(self.widths)
         # columns: x₁, v₁, x at the start, the force before and after it changes, the speeds
         state, work = np.eye(3, 5 + count), np.zeros((count, 5 + count))
         moves = {width: plant.moved(width) for width in set(self.widths)}
         for i, width in enumerate(self.widths):
             move = moves[width]
-            late = ends[i] > part - 1e-9
             inputs = np.zeros((2, 5 + count))
-            inputs[0, 5 + i] = inputs[1, 4 if late else 3] = 1
+            inputs[0, 5 + i] = inputs[1, 4 if i >= counts[0] else 3] = 1
             work[i] = move[3, :3] @ state + move[3, 4:] @ inputs
             state = move[:3, :3] @ state + move[:3, 4:] @ inputs
         self.state, self.work = state, work
@@ -103,3 +145,10 @@ class Lifted:
     def worst_speeds(self, angle: float) -> Array:
         """Those of the least eigenvalue."""
         return np.linalg.eigh(self.form(angle))[1][:, 0] / np.sqrt(self.widths)
+
+
+def least_of_all(plant: Plant, pieces: int, angle: float | None = None) -> float:
+    """The least eigenvalue of any angle, or of this one, of pieces that have become small."""
+    coarse, fine = (Lifted(plant, pieces, halvings) for halvings in (0, 1))
+    at = coarse.worst()[1] if angle is None else angle
+    return fine.least(at) + (fine.least(at) - coarse.least(at)) / 3

@@ -22,6 +22,7 @@ n and over λ = 0, hyperbolic in a T and rational in z, so that the criterion ti
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -40,6 +41,9 @@ _BITS = 320
 
 _ROOM = 90
 """Bits below its largest coefficient at which the polynomial that is proved lies under the criterion."""
+
+_APART = 100
+"""Bits below two roots to which they may be equal."""
 
 LARGEST_TURN = 2000
 """|a| T up to which a criterion is written down: far more than any cable asks for at its rate."""
@@ -101,7 +105,7 @@ class Elastic:
         forms, loop = self._forms, self.loop
         x = ball(cosine)
         z = acb(x, -(1 - x * x).sqrt())  # z⁻¹
-        sums = _Sums([ball(f) for f in forms[0]], x, z, ball(loop.part_delay))
+        sums = _Sums(forms[0], x, z)
         moved = [ball(f) for f in forms[2]]
         pulled, read = (
             sums.over([ball(f) for f in form], arb(0), False).real / 2 for form in (self._pulled, forms[1])
@@ -188,12 +192,14 @@ class Elastic:
 class _Sums:
     """Σ over n of what is rational in λ, at one θ, T = 1."""
 
-    def __init__(self, form: list[arb], x: arb, z: acb, delay: arb) -> None:
-        self.form, self.x, self.z = form, x, z
-        half = acb(form[1] / form[2] / 2)
-        root = (half * half - form[0] / form[2]).sqrt()
-        if not root.abs_lower() > 0:  # two equal roots: what is claimed is decided elsewhere
-            root += half * arb(2) ** -200
+    def __init__(self, form: Sequence[Fraction], x: arb, z: acb) -> None:
+        self.form, self.x, self.z = [ball(f) for f in form], x, z
+        middle = form[1] / form[2] / 2
+        half = acb(ball(middle))
+        root = acb(ball(middle**2 - form[0] / form[2])).sqrt()
+        least = half * arb(2) ** -_APART
+        if not root.abs_lower() > least.abs_upper():  # as good as equal: the sums are those of roots so near
+            root = least
         self.squares = half + root, half - root
         self.roots = [square.sqrt() for square in self.squares]
         self.falls = [a.cosh() - x for a in self.roots]
