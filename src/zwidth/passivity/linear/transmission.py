@@ -43,7 +43,7 @@ _ROOM = 90
 """Bits below its largest coefficient at which the polynomial that is proved lies under the criterion."""
 
 _APART = 100
-"""Bits below two roots to which they may be equal."""
+"""Bits below two roots by which equal ones are taken apart: what is claimed is decided by the checker."""
 
 LARGEST_TURN = 2000
 """|a| T up to which a criterion is written down: far more than any cable asks for at its rate."""
@@ -157,11 +157,9 @@ class Elastic:
     def _swing(self) -> tuple[list[arb], list[arb]]:
         """det(z − Φ) z⁻² and the motor's position after its held force, ascending in z⁻¹."""
         t, part = self.loop.period, self.loop.part_delay
-        m, k = ball(self.mass / t**2), ball(self.stiffness)
-        drag = ball((self.loop.damping + self.damping) / t)
-        half = drag / m / 2
-        root = acb(half * half - k / m).sqrt()
-        root = root if root.abs_lower() > 0 else root + acb(arb(2) ** (-self.bits // 2))
+        mass, drag = self.mass / t**2, (self.loop.damping + self.damping) / t
+        m, k, half = ball(mass), ball(self.stiffness), ball(drag / mass / 2)
+        root = _half_apart(drag / mass / 2, self.stiffness / mass)
 
         def moved(time: arb) -> tuple[arb, arb, arb, arb]:
             """φ₁₂, φ₂₂ and the position and speed after a force of 1 held so long."""
@@ -194,13 +192,9 @@ class _Sums:
 
     def __init__(self, form: Sequence[Fraction], x: arb, z: acb) -> None:
         self.form, self.x, self.z = [ball(f) for f in form], x, z
-        middle = form[1] / form[2] / 2
-        half = acb(ball(middle))
-        root = acb(ball(middle**2 - form[0] / form[2])).sqrt()
-        least = half * arb(2) ** -_APART
-        if not root.abs_lower() > least.abs_upper():  # as good as equal: the sums are those of roots so near
-            root = least
-        self.squares = half + root, half - root
+        half = form[1] / form[2] / 2
+        root = _half_apart(half, form[0] / form[2])
+        self.squares = ball(half) + root, ball(half) - root
         self.roots = [square.sqrt() for square in self.squares]
         self.falls = [a.cosh() - x for a in self.roots]
         top = self.falls[0] * self.falls[1]
@@ -221,6 +215,12 @@ class _Sums:
             wave = early.cosh() - z * late.cosh() if odd else (early.sinh() + z * late.sinh()) / a
             total += share * wave / (2 * fall)
         return total
+
+
+def _half_apart(half: Fraction, product: Fraction) -> acb:
+    """√(half² − product) of two roots; of equal ones so little that nothing changes by it."""
+    found, least = acb(ball(half**2 - product)).sqrt(), abs(ball(half)) * arb(2) ** -_APART
+    return found if found.abs_lower() > least else acb(least)
 
 
 def _at(coefficients: tuple[int, ...], z: acb) -> acb:
@@ -276,7 +276,7 @@ class ElasticRefutation:
 @lru_cache(maxsize=256)
 def decide_elastic(elastic: Elastic) -> ElasticProof | ElasticRefutation:
     """Decide the criterion, stability and static stiffness."""
-    at_one = sum(elastic.loop.numerator)
+    loop = elastic.loop
     polynomial, shift = elastic.polynomial
     try:
         sign = prove_nonnegative(polynomial)
@@ -288,7 +288,8 @@ def decide_elastic(elastic: Elastic) -> ElasticProof | ElasticRefutation:
         return ElasticRefutation("criterion", sign) if below else ElasticRefutation("too close to zero")
     if not elastic.held:
         return ElasticRefutation("too close to zero" if elastic.held is None else "unstable")
-    if at_one < 0:
+    # k H/(k + H) at rest: what is stable has k D(1) + N(1) of the sign of D's first coefficient
+    if sum(loop.numerator) * loop.denominator[0] < 0:
         return ElasticRefutation("negative static stiffness")
     scale = Fraction(2) ** -shift
     return ElasticProof(tuple(Fraction(int(c)) * scale for c in polynomial.coeffs()), sign)
