@@ -1,6 +1,6 @@
 """Motor, transmission and hand by another road: one sample period in the time domain, cut into pieces.
 
-The hand's side moves with one speed in each piece, and the next period is the last one times e^{jθ}; between
+The hand's side moves with a speed that is a straight line in each piece, and the next period is the last one times e^{jθ}; between
 them the motor moves exactly.  What the hand puts in is a Hermitian form of the speeds, its least eigenvalue
 < 0 where it gains, and a hair above the truth where it does not, less with every piece more.  T = 1.
 """
@@ -64,8 +64,8 @@ class Plant:
         waiting = [force, *np.eye(count)[2 + order :]]  # of this sample, of the one before, …
         for i in range(whole + 1):
             step[2 + order + i] = waiting[i]
-        step[:2] = late[:, :2] @ (early[:, :2] @ np.eye(2, count) + np.outer(early[:, 5], waiting[whole + 1]))
-        step[:2] += np.outer(late[:, 5], waiting[whole])
+        step[:2] = late[:, :2] @ (early[:, :2] @ np.eye(2, count) + np.outer(early[:, 6], waiting[whole + 1]))
+        step[:2] += np.outer(late[:, 6], waiting[whole])
         return float(max(abs(np.linalg.eigvals(step))))
 
     @property
@@ -79,42 +79,44 @@ class Plant:
         return complex(np.polyval(self.numerator[::-1], 1 / z) / np.polyval(self.denominator[::-1], 1 / z))
 
     def moved(self, time: float) -> Array:
-        """After it: x₁, v₁, x, and ∫ of the cable's force, of x₁, v₁, x, 0 and of the hand's speed and F."""
+        """After it: x₁, v₁, x, and of the cable's force ∫ and ∫∫, of x₁, v₁, x, v, 0, 0, F and the hand's rate."""
         m, b, k, c = self.mass, self.damping, self.stiffness, self.inside
-        rates = np.zeros((6, 6))
-        rates[0, 1] = rates[2, 4] = 1
-        rates[1] = np.array([-k, -b - c, k, 0, c, -1]) / m
-        rates[3] = [-k, -c, k, 0, c, 0]
-        return np.asarray(expm(rates * time)[:4])
+        rates = np.zeros((8, 8))
+        rates[0, 1] = rates[2, 3] = rates[3, 7] = rates[5, 4] = 1
+        rates[1] = np.array([-k, -b - c, k, c, 0, 0, -1, 0]) / m
+        rates[4, :4] = [-k, -c, k, c]
+        return np.asarray(expm(rates * time))[[0, 1, 2, 4, 5]]
 
 
 class Lifted:
-    """The form of the hand's speeds in one period."""
+    """The form of the hand's speeds in one period: of each piece its mean, and √3 times half its rise."""
 
-    def __init__(self, plant: Plant, pieces: int, halvings: int = 0) -> None:
+    def __init__(self, plant: Plant, pieces: int) -> None:
         self.plant = plant
         part = plant.delay - int(plant.delay)
-        counts = [int(np.ceil(pieces * share)) << halvings for share in (part, 1 - part)]
+        counts = [int(np.ceil(pieces * share)) for share in (part, 1 - part)]
         self.widths = np.repeat([part, 1 - part], counts) / np.repeat(np.maximum(counts, 1), counts)
-        count = len(self.widths)
+        size = 5 + 2 * len(self.widths)
         # columns: x₁, v₁, x at the start, the force before and after it changes, the speeds
-        state, work = np.eye(3, 5 + count), np.zeros((count, 5 + count))
+        state, self.work = np.eye(3, size), np.zeros((size - 5, size))
         moves = {width: plant.moved(width) for width in set(self.widths)}
+        one, root = np.eye(size), np.sqrt(3)
         for i, width in enumerate(self.widths):
-            move = moves[width]
-            inputs = np.zeros((2, 5 + count))
-            inputs[0, 5 + i] = inputs[1, 4 if i >= counts[0] else 3] = 1
-            work[i] = move[3, :3] @ state + move[3, 4:] @ inputs
-            state = move[:3, :3] @ state + move[:3, 4:] @ inputs
-        self.state, self.work = state, work
+            mean, rise = one[5 + 2 * i], one[6 + 2 * i]
+            inputs = [mean - root * rise, 0 * mean, 0 * mean, one[4 if i >= counts[0] else 3], 2 * root / width * rise]
+            after = moves[width] @ np.vstack([state, *inputs])
+            state = after[:3]
+            self.work[2 * i] = after[3]
+            self.work[2 * i + 1] = root * (after[3] - 2 / width * after[4])
+        self.state = state
 
     def form(self, angle: float) -> Array:
         """Of the speeds times the root of their time, at θ in (0, π]."""
-        plant, count, z = self.plant, len(self.widths), np.exp(1j * angle)
+        plant, count, z = self.plant, 2 * len(self.widths), np.exp(1j * angle)
         force = plant.force(z) * z ** -int(plant.delay)
         of_speeds = np.zeros((5 + count, count), complex)
         of_speeds[5:] = np.eye(count)
-        of_speeds[2] = self.widths / (z - 1)
+        of_speeds[2, ::2] = self.widths / (z - 1)
         of_start = np.zeros((5 + count, 2), complex)
         of_start[0, 0] = of_start[1, 1] = 1
         held = np.array([force / z, force])
@@ -125,7 +127,7 @@ class Lifted:
         end = self.state[:2]
         start = np.linalg.solve(z * np.eye(2) - end @ of_start, end @ of_speeds)
         power = self.work @ (of_speeds + of_start @ start)
-        scale = np.sqrt(self.widths)
+        scale = np.sqrt(np.repeat(self.widths, 2))
         power = power / np.outer(scale, scale) + plant.handle_damping * np.eye(count)
         return (power + power.conj().T) / 2
 
@@ -141,14 +143,3 @@ class Lifted:
         low, high = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
         found = minimize_scalar(self.least, bounds=(low, high), method="bounded", options={"xatol": 1e-7})
         return min((values[i], float(grid[i])), (float(found.fun), float(found.x)))
-
-    def worst_speeds(self, angle: float) -> Array:
-        """Those of the least eigenvalue."""
-        return np.linalg.eigh(self.form(angle))[1][:, 0] / np.sqrt(self.widths)
-
-
-def least_of_all(plant: Plant, pieces: int, angle: float | None = None) -> float:
-    """The least eigenvalue of any angle, or of this one, of pieces that have become small."""
-    coarse, fine = (Lifted(plant, pieces, halvings) for halvings in (0, 1))
-    at = coarse.worst()[1] if angle is None else angle
-    return fine.least(at) + (fine.least(at) - coarse.least(at)) / 3
