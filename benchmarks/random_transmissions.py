@@ -25,7 +25,7 @@ from zwidth.passivity.linear.transmission import Elastic, ElasticProof, decide_e
 from zwidth.passivity.transmission import elastic_of
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "passivity"))
-from transmission_lifted import Lifted, Plant  # noqa: E402
+from transmission_lifted import Lifted, Plant
 
 NEAR, CLEAR = Fraction(1, 10**6), Fraction(1, 1000)
 EVERY = 8
@@ -140,7 +140,9 @@ def one(seed: int) -> tuple[list[str], list[str]]:
         elif evidence is None or not evidence.verify():
             wrong.append(f"{verdict.outcome} at {gain} without evidence")
         else:
-            sorts.append(f"{verdict.outcome}: {getattr(decide_elastic(loops.elastic(gain)), 'reason', 'criterion')}")
+            sorts.append(
+                f"{verdict.outcome}: {getattr(decide_elastic(loops.elastic(gain)), 'reason', 'criterion')}"
+            )
     if seed % EVERY == 0 and loops.elastic(around).turn < LARGEST_TURN:
         sorts.append("in the time domain")
         clear = {limit * (1 - CLEAR), limit * (1 + CLEAR)} if limit else set()

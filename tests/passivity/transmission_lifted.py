@@ -1,8 +1,8 @@
 """Motor, transmission and hand by another road: one sample period in the time domain, cut into pieces.
 
-The hand's side moves with a speed that is a straight line in each piece, and the next period is the last one times e^{jθ}; between
-them the motor moves exactly.  What the hand puts in is a Hermitian form of the speeds, its least eigenvalue
-< 0 where it gains, and a hair above the truth where it does not, less with every piece more.  T = 1.
+In each piece the speed of the hand's side is a straight line, and the next period is the last one times
+e^{jθ}; the motor moves exactly.  What the hand puts in is a Hermitian form of the speeds: its least
+eigenvalue is < 0 only where a hand gains, and the more pieces, the less above the truth.  T = 1.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class Plant:
         return complex(np.polyval(self.numerator[::-1], 1 / z) / np.polyval(self.denominator[::-1], 1 / z))
 
     def moved(self, time: float) -> Array:
-        """After it: x₁, v₁, x, and of the cable's force ∫ and ∫∫, of x₁, v₁, x, v, 0, 0, F and the hand's rate."""
+        """x₁, v₁, x, ∫ and ∫∫ of the cable's force after it, of x₁, v₁, x, v, 0, 0, F and v̇ before."""
         m, b, k, c = self.mass, self.damping, self.stiffness, self.inside
         rates = np.zeros((8, 8))
         rates[0, 1] = rates[2, 3] = rates[3, 7] = rates[5, 4] = 1
@@ -103,7 +103,13 @@ class Lifted:
         one, root = np.eye(size), np.sqrt(3)
         for i, width in enumerate(self.widths):
             mean, rise = one[5 + 2 * i], one[6 + 2 * i]
-            inputs = [mean - root * rise, 0 * mean, 0 * mean, one[4 if i >= counts[0] else 3], 2 * root / width * rise]
+            inputs = [
+                mean - root * rise,
+                0 * mean,
+                0 * mean,
+                one[4 if i >= counts[0] else 3],
+                2 * root / width * rise,
+            ]
             after = moves[width] @ np.vstack([state, *inputs])
             state = after[:3]
             self.work[2 * i] = after[3]
