@@ -149,3 +149,75 @@ class Lifted:
         low, high = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
         found = minimize_scalar(self.least, bounds=(low, high), method="bounded", options={"xatol": 1e-7})
         return min((values[i], float(grid[i])), (float(found.fun), float(found.x)))
+
+    def worst_speeds(self, angle: float, most: int = 12) -> Array:
+        """Those of the least eigenvalue, as amplitudes of the frequencies θ + 2πn, n = −most … most."""
+        mean, rise = np.linalg.eigh(self.form(angle))[1][:, 0].reshape(-1, 2).T / np.sqrt(self.widths)
+        fine = 16
+        place = (np.arange(fine) + 0.5) / fine
+        times = (np.cumsum(self.widths) - self.widths)[:, None] + self.widths[:, None] * place
+        speeds = (mean[:, None] + np.sqrt(3) * rise[:, None] * (2 * place - 1)) * self.widths[:, None] / fine
+        turns = angle + 2 * np.pi * np.arange(-most, most + 1)
+        return np.array([(speeds * np.exp(-1j * turn * times)).sum() for turn in turns])
+
+
+def put_in(
+    plant: Plant, handle_mass: float, angle: float, speeds: Array, periods: int, pieces: int = 40
+) -> Array:
+    """What a hand has put in after each period, by a force that stays the same in each piece of it.
+
+    `speeds` of its side, amplitudes of the frequencies θ + 2πn, n = −N … N, one column a motion, say the force.
+    From the state in which that goes on, both masses, the cable and the law move by themselves.  Real and
+    imaginary part are two motions: the sum of their work, in which what comes and goes with 2θ cancels.
+    """
+    m, b, k, c = plant.mass, plant.damping, plant.stiffness, plant.inside
+    half, whole, part, z = len(speeds) // 2, int(plant.delay), plant.delay % 1, np.exp(1j * angle)
+    s = 1j * (angle + 2 * np.pi * np.arange(-half, half + 1))[:, None]
+    pull, own = k + c * s, m * s * s + (b + c) * s + k
+    hold = plant.force(z) * z**-whole * (1 - 1 / z) * np.exp(-s * part) / s
+    if plant.at_handle:
+        reading = (speeds / s).sum(0)
+    else:
+        reading = (pull * speeds / s / own).sum(0) / (1 + (hold / own).sum())
+    motor = (pull * speeds / s - hold * reading) / own
+    force = (handle_mass * s + plant.handle_damping) * speeds + pull * (speeds / s - motor)
+    rates = np.zeros((6, 6))
+    rates[0, 1] = rates[2, 3] = 1
+    rates[1] = np.array([-k, -b - c, k, c, -1, 0]) / m
+    rates[3] = np.array([k, c, -k, -c - plant.handle_damping, 0, 1]) / handle_mass
+    ends = np.unique(np.append(np.linspace(0, 1, pieces + 1), part))
+    moves = [expm(rates * width)[:4] for width in np.diff(ends)]
+    pushes = [(force * np.exp(s * (x + y) / 2)).sum(0) for x, y in zip(ends, ends[1:], strict=False)]
+
+    def moved(state: Array, early: Array, late: Array, turned: complex) -> tuple[Array, Array]:
+        """The state after a period, and the work in it."""
+        work = np.zeros(speeds.shape[1])
+        for begin, move, push in zip(ends, moves, pushes, strict=False):
+            acting = np.broadcast_to(late if begin >= part else early, push.shape)
+            after = move @ np.vstack([state, acting, push * turned])
+            work = work + (np.conj(push * turned) * (after[2] - state[2])).real
+            state = after
+        return state, work
+
+    read = 2 if plant.at_handle else 0
+    nothing, none = np.zeros((4, speeds.shape[1])), np.zeros(1)
+    step = np.array([moved(nothing + one[:, None], none, none, 0)[0][:, 0] for one in np.eye(4)]).T
+    law = plant.force(z) * z**-whole
+    step = step + np.outer(
+        moved(nothing, law / z * np.ones(1), law * np.ones(1), 0)[0][:, 0], np.eye(4)[read]
+    )
+    state = np.linalg.solve(z * np.eye(4) - step, moved(nothing, none, none, 1)[0])
+    before = range(1, len(plant.numerator) + len(plant.denominator) + whole + 2)
+    readings, forces = (
+        [state[read] * z**-i for i in before],
+        [plant.force(z) * state[read] * z**-i for i in before],
+    )
+    found = [np.zeros(speeds.shape[1])]
+    for period in range(periods):
+        readings.insert(0, state[read])
+        told = sum(n * x for n, x in zip(plant.numerator, readings, strict=False))
+        told = told - sum(d * x for d, x in zip(plant.denominator[1:], forces, strict=False))
+        forces.insert(0, told / plant.denominator[0])
+        state, work = moved(state, forces[whole + 1], forces[whole], z**period)
+        found.append(found[-1] + work)
+    return np.array(found)
