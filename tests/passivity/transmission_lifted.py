@@ -166,7 +166,7 @@ def put_in(
 ) -> Array:
     """What a hand has put in after each period, by a force that stays the same in each piece of it.
 
-    `speeds` of its side, amplitudes of the frequencies θ + 2πn, n = −N … N, one column a motion, say the force.
+    `speeds` of its side, amplitudes of θ + 2πn, n = −N … N, one column a motion, say the force.
     From the state in which that goes on, both masses, the cable and the law move by themselves.  Real and
     imaginary part are two motions: the sum of their work, in which what comes and goes with 2θ cancels.
     """
