@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
     from zwidth.passivity.storage import AvailableStorage
     from zwidth.passivity.storage.gain import Gain
-    from zwidth.passivity.transmission import ElasticViolation
+    from zwidth.passivity.witness.elastic import ElasticViolation
 
 
 Finding = Literal[

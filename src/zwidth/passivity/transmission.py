@@ -28,13 +28,11 @@ from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.certificate import FORMAT, Certificate, positivity_document
 from zwidth.passivity.linear.boundary import COARSE, largest_holding
-from zwidth.passivity.linear.criterion import frequency
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear.transmission import Elastic, ElasticProof, ElasticRefutation, decide_elastic
-from zwidth.passivity.result import Evidence
-from zwidth.passivity.scope import Contact, Outcome, scope_of, unit_key
+from zwidth.passivity.scope import Contact, Outcome, scope_of
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.witness.violation import FORMAT as VIOLATION
+from zwidth.passivity.witness.elastic import ElasticViolation, elastic_document
 from zwidth.passivity.witness.witness import Setting
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -54,63 +52,6 @@ _IF_IDEAL = (
     "motor's side, or the encoder's steps, it is proved only as far as what the motor feels of friction "
     "whatever the hand does pays for all."
 )
-
-
-@dataclass(frozen=True, repr=False)
-class ElasticViolation(Evidence):
-    """A proof that a hand can take any amount of energy out of a loop with a transmission."""
-
-    elastic: Elastic
-    setting: Setting
-    refutation: ElasticRefutation
-    witness = None
-
-    @property
-    def frequency(self) -> float | None:
-        """A frequency at which the criterion is violated [Hz]; None where something else is."""
-        cosine = self.refutation.cosine
-        return None if cosine is None else frequency(cosine, self.elastic.loop.period)
-
-    @property
-    def contact(self) -> Contact:
-        """A hand that stays inside finds it; or there is no surface."""
-        return "kept" if self.setting.unilateral else "both sides"
-
-    def to_dict(self) -> dict[str, Any]:
-        """The violation as plain data."""
-        cosine = self.refutation.cosine
-        where = {} if cosine is None else {"cosine": exact_text(cosine)}
-        return {
-            "format": VIOLATION,
-            "kind": "transmission violation",
-            **_document(self.elastic, self.setting),
-            "proof": {"kind": self.refutation.reason, **where},
-        }
-
-    def describe(self) -> str:
-        """What is violated, in words."""
-        if self.frequency is not None:
-            return (
-                f"at {self.frequency:.6g} Hz the linear criterion of motor, transmission and hand is violated"
-            )
-        if self.refutation.reason == "unstable":
-            return "while the hand holds still, the motor swings more and more on its transmission"
-        return "pressed slowly, the law pulls the hand in"
-
-
-def _document(elastic: Elastic, setting: Setting) -> dict[str, Any]:
-    """The loop and the transmission, exact."""
-    numbers = {
-        "mass": elastic.mass,
-        "stiffness": elastic.stiffness,
-        "damping": elastic.damping,
-        "handle_damping": elastic.handle_damping,
-    }
-    unit = {name: unit_key(name.removeprefix("handle_"), setting.motion) for name in numbers}
-    keys = {name: f"handle_{unit[name]}" if name.startswith("handle_") else unit[name] for name in numbers}
-    given = {keys[name]: exact_text(value) for name, value in numbers.items()}
-    encoder = "handle" if elastic.at_handle else "motor"
-    return {"loop": setting.loop_document(), "transmission": {**given, "encoder": encoder}}
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -342,7 +283,7 @@ def _proof(elastic: Elastic, setting: Setting, proof: ElasticProof) -> dict[str,
         "below": [exact_text(c) for c in proof.below],
         "positivity": positivity_document(proof.positivity),
     }
-    return {"format": FORMAT, "kind": "transmission", **_document(elastic, setting), "proof": below}
+    return {"format": FORMAT, "kind": "transmission", **elastic_document(elastic, setting), "proof": below}
 
 
 def _largest(device: Device, law: Environment) -> float | None:
