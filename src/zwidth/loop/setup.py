@@ -12,17 +12,20 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
+from zwidth.loop import two_masses
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, Plant
 from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
+from zwidth.loop.two_masses import TwoMasses
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.model.device.device import Device, require_rigid
-from zwidth.model.environment.environment import Environment
+from zwidth.model.environment.environment import Environment, certain
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import in_words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -52,6 +55,8 @@ class Setup:
     state: Array
     frame: Frame
     plain: bool
+    two: Array | None = None
+    """The numbers of a motor and a handle, see `two_masses`; None where they are one mass."""
 
     @property
     def plant_numbers(self) -> Array:
@@ -72,18 +77,20 @@ def prepare(
     timing: Timing | None = None,
     points_per_sample: int = 1,
     single: bool = False,
+    flexible: bool = False,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
 
-    `single` is of the `LoopContext`.
+    `single` is of the `LoopContext`; `flexible` allows a transmission.
     """
     law, placed = as_environment(environment), initial_position is not None
     laid = laid_out(
         device, law, operator, duration, {}, placed=placed, amplifier=amplifier, timing=timing,
-        points_per_sample=points_per_sample, single=single,
+        points_per_sample=points_per_sample, single=single, flexible=flexible,
     )  # fmt: skip
     start = laid.starts(initial_position, initial_velocity, encoder_phase)
     states, numbers, memories = started([laid], np.array([start]))
+    two = _two_masses(device, laid.operator, laid.frame) if device.transmission is not None else None
     return Setup(
         device=device,
         environment=law,
@@ -92,9 +99,10 @@ def prepare(
         encoder_phase=start[2],
         law=numbers[0],
         memory=memories[0],
-        state=states[0],
+        state=states[0] if two is None else two_masses.state_of(states[0]),
         frame=laid.frame,
         plain=laid.plain,
+        two=two,
     )
 
 
@@ -145,6 +153,7 @@ def laid_out(
     timing: Timing | None = None,
     points_per_sample: int = 1,
     single: bool = False,
+    flexible: bool = False,
 ) -> Laid:
     """Everything but the start checked and laid out; `placed` where somebody chose it.
 
@@ -157,7 +166,8 @@ def laid_out(
         If anything cannot be simulated.
     """
     rest, operator = _at_rest(device, law, operator, placed, known)
-    frame = frame_of(device, operator, duration, amplifier, timing, points_per_sample, known)
+    moved = device.motor_side if flexible and isinstance(device, Device) else device
+    frame = frame_of(moved, operator, duration, amplifier, timing, points_per_sample, known)
     if operator.kinematic:
         assert frame.signals.position is not None
         rest = float(frame.signals.position[0])
@@ -311,6 +321,40 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
     )
 
 
+def _two_masses(device: Device, operator: Operator, frame: Frame) -> Array:
+    """The numbers of `two_masses.TwoMasses`, of a device with a transmission."""
+    between, hand, motor = device.transmission, operator.hand, frame.plant
+    assert between is not None
+    known = between.parameters()
+    for key in ("stiffness", "handle_mass"):
+        if key not in known:
+            raise InputError(
+                f"{in_words(key)} of the transmission is needed to simulate a motion and is unknown; give "
+                f"transmission.{key}, or simulate the motor's side alone, device.motor_side"
+            )
+    own = {key: float(certain(value, f"transmission.{key}")) for key, value in known.items()}
+    if device.mass is None:
+        raise InputError("mass is needed to simulate a motion and the motor has none; give mass [kg]")
+    mass, friction = float(device.motor_side.exact("mass")), own["handle_coulomb_friction"]
+    numbers = TwoMasses(
+        motor=motor._replace(mass=mass, hand_mass=0.0, stiffness=0.0, hand_damping=0.0),
+        handle=Plant(
+            own["handle_mass"], hand.mass, own["handle_damping"], friction, friction, hand.stiffness,
+            hand.damping, motor.lag, motor.slew,
+        ),
+        spring=own["stiffness"],
+        damper=own["damping"],
+        sensed=float(between.encoder == "handle"),
+        driven=float(operator.kinematic),
+    )  # fmt: skip
+    if two_masses.pieces_of_two(numbers, float(frame.period)) > MOST_PIECES:
+        raise InputError(
+            f"the transmission and the hand move over {MOST_PIECES} times faster than the sample period "
+            f"{float(frame.period):g} s: on this scale it is rigid; give the device without it"
+        )
+    return np.array([*numbers.motor, *numbers.handle, *numbers[2:]])
+
+
 def resting_memory(setup: Setup, reading: float) -> Array:
     """What the law of a setup remembers after the hand has been at a reading for ever."""
     return laws.remembered(setup.law, laws_of(setup.environment), laws.at_one(setup.law), reading)
@@ -439,6 +483,7 @@ def _number(value: object, what: str) -> float:
     return number
 
 
-def empty_record(frame: Frame) -> tuple[Array, Array, Array]:
-    """(commands, record, work) to run into."""
-    return np.zeros(frame.samples + 1), np.empty((RECORDED, frame.columns)), np.zeros(WORK)
+def empty_record(frame: Frame, two: bool = False) -> tuple[Array, Array, Array]:
+    """(commands, record, work) to run into, those of two masses with all that they need."""
+    rows, work = (two_masses.RECORDED_OF_TWO, two_masses.WORK_OF_TWO) if two else (RECORDED, WORK)
+    return np.zeros(frame.samples + 1), np.empty((rows, frame.columns)), np.zeros(work)

@@ -20,6 +20,7 @@ from zwidth.loop.runs import run_plain
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import Trace, build_trace
+from zwidth.loop.two_masses import run_two
 from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.device.device import Device
 from zwidth.model.operator.operator import Operator
@@ -174,8 +175,8 @@ def _simulated_one(
     progress: Progress | None = None,
     **how: Any,
 ) -> Trace:
-    setup = prepare(device, environment, operator, duration, **how)
-    commands, record, work = empty_record(setup.frame)
+    setup = prepare(device, environment, operator, duration, flexible=True, **how)
+    commands, record, work = empty_record(setup.frame, setup.two is not None)
     state, memory = setup.state.copy(), setup.memory.copy()
     done = run_setup(setup, state, memory, work, commands, record, progress)
     if state[FAULT] != 0.0:
@@ -219,13 +220,14 @@ def run_samples(
     record: NDArray[np.float64],
 ) -> None:
     """Take the samples `first` … `last` − 1, each with the interval behind it; can be called again."""
-    numbers, law, late = setup.plant_numbers, setup.law, setup.frame.late
+    law, late = setup.law, setup.frame.late
     force, anchor, target, switch = setup.frame.optional()
-    if setup.plain:
+    if setup.plain and setup.two is None:
         period = float(setup.frame.lengths[0])
-        run_plain(first, last, state, numbers, law, late, period, force, commands, record)
+        run_plain(first, last, state, setup.plant_numbers, law, late, period, force, commands, record)
         return
-    run(
+    step, numbers = (run, setup.plant_numbers) if setup.two is None else (run_two, setup.two)
+    step(
         first, last, setup.frame.points, state, numbers, law, memory, work,
         late, setup.frame.offset, setup.frame.lengths, setup.frame.arrivals, setup.frame.missed,
         force, anchor, target, switch, commands, record,
