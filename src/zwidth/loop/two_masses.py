@@ -151,7 +151,7 @@ def _side_of(direction: float, external: float, stiction: float, rounding: float
 @compiled
 def _net(external: float, side: float, velocity: float, body: Plant) -> float:
     """The force on a body but for its own damping; of one that has just broken away to the last digit."""
-    if side != 0.0 and velocity == 0.0 and side * external <= body.stiction:
+    if body.stiction > 0.0 and side != 0.0 and velocity == 0.0 and side * external <= body.stiction:
         return side * (body.stiction - body.coulomb)
     return external - side * body.coulomb
 
