@@ -24,6 +24,9 @@ PIECE = 2**18
 MOST_COLUMNS = 64
 """Of one matrix, or one message: more are no columns of a log."""
 
+LEFT_OUT = "the others are left out"
+"""Said of runs, where one is looked at."""
+
 Values = NDArray[Any]
 
 
