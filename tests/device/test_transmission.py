@@ -93,7 +93,6 @@ REFUSED = {
     "limit": lambda d: zw.limit(d, WALL),
     "limit without grid": lambda d: zw.limit(d, WALL, iterate=False),
     "available storage": lambda d: zw.available_storage(d, WALL, penetration=0.001, speed=0.1),
-    "simulate": lambda d: zw.simulate(d, WALL, zw.operators.Finger(), 0.1),
     "batch": lambda d: zw.simulation.simulate_batch(
         d, WALL, zw.operators.Finger(), 0.1, vary={"environment.stiffness": [100, 200]}
     ),

@@ -255,7 +255,7 @@ def frame_of(
         return found
     if not isinstance(device, Device):
         raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
-    require_rigid(device, "a simulated touch")
+    require_rigid(device, "this loop")
     if not isinstance(operator, Operator):
         raise InputError(
             f"operator is a hand, such as zwidth.operators.Finger(), got {type(operator).__name__}"

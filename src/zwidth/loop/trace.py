@@ -18,7 +18,9 @@ from zwidth.loop import kernel, two_masses
 from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Frame, Setup
 from zwidth.loop.start import WOUND, Start, held_at_start
+from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,10 +68,6 @@ VARIABLES = {
     "hand_spring_energy": Variable("E_s", "energy in the hand's spring", 3),
     "hand_damper_loss": Variable("E_d", "energy lost in the hand's damper", 3),
     "hand_kinetic_energy": Variable("E_m", "kinetic energy of the hand's mass", 3),
-}
-"""Every variable of a trace, in the order of its files."""
-
-OF_TWO_MASSES = {
     "motor_position": Variable("x_1", "position of the motor; position is that of the handle", 0),
     "motor_velocity": Variable("v_1", "velocity of the motor; velocity is that of the handle", 1),
     "transmission_force": Variable(
@@ -81,7 +79,10 @@ OF_TWO_MASSES = {
     "transmission_energy": Variable("E_t", "energy in the spring of the transmission", 3),
     "transmission_loss": Variable("E_ct", "energy lost in the damper of the transmission", 3),
 }
-"""What a device with a transmission has besides; all other energies are of both its sides together."""
+"""Every variable of a trace, in the order of its files; with a transmission energies are of both sides."""
+
+SOMETIMES = {"anchor_position", *(name for name in VARIABLES if name.startswith(("motor_", "transmission_")))}
+"""What not every trace has: the one if something draws to it, the others of a device with a transmission."""
 
 
 class Labelled(NamedTuple):
@@ -149,7 +150,7 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> Trace:
     units = (*UNITS[device.motion], "J")
     variables = {
         name: Labelled(("time",), values[name], attributes_of(variable, units))
-        for name, variable in {**VARIABLES, **OF_TWO_MASSES}.items()
+        for name, variable in VARIABLES.items()
         if name in values
     }
     time = instants(setup.frame)[:columns]
@@ -375,6 +376,11 @@ def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
         f"hand_{device.key('damping')}": plant.hand_damping,
         "stops": stops,
     }
+    if device.transmission is not None:
+        kinds = parameters_of(Transmission)
+        for key, value in device.transmission.parameters().items():
+            result[f"transmission_{kinds[key].quantity.key_for(device.motion)}"] = float(value)  # type: ignore[arg-type]
+        result["encoder"] = device.transmission.encoder
     if device.force_limit is not None:
         result[device.key("force_limit")] = float(device.exact("force_limit"))
     return result

@@ -99,6 +99,8 @@ def draw_position(axes: Axes, trace: xr.Dataset) -> None:
         read = trace["measured_position"].values * factor
         axes.step(time, read, where="post", color=SKY, lw=1, label="read by the encoder")
     axes.plot(*thinned(time, x * factor), color=BLUE, label="position")
+    if "motor_position" in trace:
+        axes.plot(*thinned(time, trace["motor_position"].values * factor), color=GREEN, lw=1, label="motor")
     low, high = axes.get_ylim()
     if high > 0:
         axes.axhspan(0, high, color=GREY, alpha=0.12, lw=0)
