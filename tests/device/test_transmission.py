@@ -229,7 +229,6 @@ def test_options_take_the_place_of_the_file(err):
     [
         "check it.toml --stiffness 100",
         "limit it.toml --stiffness 100",
-        "simulate it.toml --stiffness 100 --operator finger --duration 0.1",
         "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1",
         "sweep it.toml --stiffness 100 --vary 'rate=1000,2000'",
         "compare it.toml --stiffness 100",

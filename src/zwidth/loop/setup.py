@@ -20,11 +20,11 @@ from zwidth.loop.timing import Timing
 from zwidth.loop.two_masses import TwoMasses
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.model.device.device import Device, require_rigid
-from zwidth.model.environment.environment import Environment, certain
+from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.text import in_words
 
 if TYPE_CHECKING:
@@ -332,7 +332,10 @@ def _two_masses(device: Device, operator: Operator, frame: Frame) -> Array:
                 f"{in_words(key)} of the transmission is needed to simulate a motion and is unknown; give "
                 f"transmission.{key}, or simulate the motor's side alone, device.motor_side"
             )
-    own = {key: float(certain(value, f"transmission.{key}")) for key, value in known.items()}
+    for key, value in known.items():
+        if isinstance(value, Interval):
+            raise InputError(f"transmission.{key} is the interval {value}; a simulated motion needs one value")
+    own = {key: float(value) for key, value in known.items() if isinstance(value, Exact)}
     if device.mass is None:
         raise InputError("mass is needed to simulate a motion and the motor has none; give mass [kg]")
     mass, friction = float(device.motor_side.exact("mass")), own["handle_coulomb_friction"]

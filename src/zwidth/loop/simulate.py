@@ -83,6 +83,7 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a hand on the device, ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly.
 
+    Of a device with a `Transmission` two masses, see there; the hand is on the handle.
     Of a `Pair`, ``simulate(pair, leader, follower, duration)`` with what holds either arm, see
     `simulation.simulate_pair`.
 
@@ -100,7 +101,7 @@ def simulate(
         x at t = 0 [m; rad], > 0 inside the wall; by default where the operator starts.  For a law on
         both sides of x = 0 that is where the law is at rest, unless the operator's own start is given.
     initial_velocity
-        ẋ at t = 0 [m/s; rad/s].
+        ẋ at t = 0 [m/s; rad/s], of motor and handle.
     encoder_phase
         φ in x_m = Δ floor(x/Δ + φ), 0 ≤ φ < 1 [counts].
     amplifier

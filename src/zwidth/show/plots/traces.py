@@ -135,6 +135,7 @@ def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
         "kinetic_energy": (BLUE, "kinetic"),
     }
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
+    lost = lost + trace["transmission_loss"].values if "transmission_loss" in trace else lost
     curves = {name: lost if name == "loss" else trace[name].values for name in names}
     factor, unit = scale([max(float(np.abs(c).max()) for c in curves.values())], "J")
     for name, (colour, text) in names.items():
