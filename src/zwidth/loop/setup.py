@@ -17,15 +17,13 @@ from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, Plant
 from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
-from zwidth.loop.two_masses import TwoMasses
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.model.device.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
-from zwidth.quantity.exact import Exact, Interval, RealLike
-from zwidth.quantity.text import in_words
+from zwidth.quantity.exact import Exact, RealLike
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,8 +53,7 @@ class Setup:
     state: Array
     frame: Frame
     plain: bool
-    two: Array | None = None
-    """The numbers of a motor and a handle, see `two_masses`; None where they are one mass."""
+    two: Array | None = None  # of `two_masses`, with a transmission
 
     @property
     def plant_numbers(self) -> Array:
@@ -90,7 +87,7 @@ def prepare(
     )  # fmt: skip
     start = laid.starts(initial_position, initial_velocity, encoder_phase)
     states, numbers, memories = started([laid], np.array([start]))
-    two = _two_masses(device, laid.operator, laid.frame) if device.transmission is not None else None
+    two = two_masses.numbers_of(device, laid.operator, laid.frame.plant, MOST_PIECES) if flexible else None
     return Setup(
         device=device,
         environment=law,
@@ -319,43 +316,6 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
         lag=actuation.lag,
         slew=actuation.slew,
     )
-
-
-def _two_masses(device: Device, operator: Operator, frame: Frame) -> Array:
-    """The numbers of `two_masses.TwoMasses`, of a device with a transmission."""
-    between, hand, motor = device.transmission, operator.hand, frame.plant
-    assert between is not None
-    known = between.parameters()
-    for key in ("stiffness", "handle_mass"):
-        if key not in known:
-            raise InputError(
-                f"{in_words(key)} of the transmission is needed to simulate a motion and is unknown; give "
-                f"transmission.{key}, or simulate the motor's side alone, device.motor_side"
-            )
-    for key, value in known.items():
-        if isinstance(value, Interval):
-            raise InputError(f"transmission.{key} is the interval {value}; a simulated motion needs one value")
-    own = {key: float(value) for key, value in known.items() if isinstance(value, Exact)}
-    if device.mass is None:
-        raise InputError("mass is needed to simulate a motion and the motor has none; give mass [kg]")
-    mass, friction = float(device.motor_side.exact("mass")), own["handle_coulomb_friction"]
-    numbers = TwoMasses(
-        motor=motor._replace(mass=mass, hand_mass=0.0, stiffness=0.0, hand_damping=0.0),
-        handle=Plant(
-            own["handle_mass"], hand.mass, own["handle_damping"], friction, friction, hand.stiffness,
-            hand.damping, motor.lag, motor.slew,
-        ),
-        spring=own["stiffness"],
-        damper=own["damping"],
-        sensed=float(between.encoder == "handle"),
-        driven=float(operator.kinematic),
-    )  # fmt: skip
-    if two_masses.pieces_of_two(numbers, float(frame.period)) > MOST_PIECES:
-        raise InputError(
-            f"the transmission and the hand move over {MOST_PIECES} times faster than the sample period "
-            f"{float(frame.period):g} s: on this scale it is rigid; give the device without it"
-        )
-    return np.array([*numbers.motor, *numbers.handle, *numbers[2:]])
 
 
 def resting_memory(setup: Setup, reading: float) -> Array:

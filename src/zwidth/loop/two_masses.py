@@ -11,10 +11,11 @@ series of its velocity passes 0.  A handle whose motion is prescribed is a body 
 from __future__ import annotations
 
 from math import ceil, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from zwidth.errors import InputError
 from zwidth.loop.kernel import (
     R_COMMAND,
     R_READING,
@@ -50,8 +51,11 @@ from zwidth.loop.plant import (
     value,
 )
 from zwidth.loop.step import ROUNDING, book, slewing
+from zwidth.model.device.device import Device
+from zwidth.model.operator.operator import Operator
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.elementary import exp
+from zwidth.quantity.exact import Interval
 
 
 class TwoMasses(NamedTuple):
@@ -83,7 +87,48 @@ RECORDED_OF_TWO = RECORDED + 5
 _V2, _X2, _FADING, _V1, _X1, _APART, _ON_1, _ON_2, _ROOM = (TERMS * i for i in range(9))
 WORK_OF_TWO = 9 * TERMS
 
+_NUMBERS = (
+    "mass",
+    *(f"transmission.{key}" for key in ("stiffness", "damping", "handle_mass", "handle_damping")),
+    "transmission.handle_coulomb_friction",
+)
+
 _MOST_EVENTS = 100_000
+
+
+def numbers_of(device: Device, operator: Operator, motor: Plant, most: int) -> Array | None:
+    """Of the bodies of a device, in at most so many pieces a period; None of one without a transmission.
+
+    Raises
+    ------
+    InputError
+        If a number is unknown or an interval, or they move too fast.
+    """
+    between, hand, period = device.transmission, operator.hand, float(device.exact("sample_period"))
+    if between is None:
+        return None
+    given: dict[str, Any] = {f"transmission.{key}": value for key, value in between.parameters().items()}
+    given |= device.parameters()
+    for key in _NUMBERS:
+        if key not in given:
+            raise InputError(f"{key} is unknown, and two masses are simulated: give it, or device.motor_side")
+        if isinstance(given[key], Interval):
+            raise InputError(f"{key} is the interval {given[key]}; a simulated motion needs one value of it")
+    own, spring, damper, mass, drag, dry = (float(given[key]) for key in _NUMBERS)
+    two = TwoMasses(
+        motor._replace(mass=own, hand_mass=0.0, stiffness=0.0, hand_damping=0.0),
+        Plant(mass, hand.mass, drag, dry, dry, hand.stiffness, hand.damping, motor.lag, motor.slew),
+        spring,
+        damper,
+        float(between.encoder == "handle"),
+        float(operator.kinematic),
+    )
+    if pieces_of_two(two, period) > most:
+        raise InputError(
+            f"motor, handle and transmission move over {most} times faster than the sample period {period:g} "
+            "s: on this scale they are rigid; give the device without its transmission"
+        )
+    return np.array([*two.motor, *two.handle, *two[2:]])
 
 
 def state_of(one: Array) -> Array:
@@ -181,7 +226,6 @@ def _stretch(
     side_2 = state[DIRECTION]
     if two.driven == 0.0:
         side_2 = _side_of(side_2, on_2, handle.stiction, size)
-    state[MOTOR_DIRECTION], state[DIRECTION] = side_1, side_2
     net_1, net_2 = _net(on_1, side_1, v1, motor), _net(on_2, side_2, v2, handle)
     length = h / pieces_of_two(two, h)
     free_2 = two.driven == 0.0 and side_2 != 0.0
@@ -191,8 +235,11 @@ def _stretch(
     turn_2 = 2.0 if two.driven > 0.0 else _event(work, _V2, _ON_2, terms, side_2, handle.stiction)
     u = min(turn_1, turn_2, 1.0)
     t = length if u == 1.0 else u * length
-    to_1 = _velocity_after(work, _V1, terms, u, turn_1, side_1, motor.stiction)
-    to_2 = v2 if two.driven > 0.0 else _velocity_after(work, _V2, terms, u, turn_2, side_2, handle.stiction)
+    to_1, after_1 = _after(work, _V1, _ON_1, terms, u, turn_1, side_1, motor.stiction)
+    to_2, after_2 = v2, side_2
+    if two.driven == 0.0:
+        to_2, after_2 = _after(work, _V2, _ON_2, terms, u, turn_2, side_2, handle.stiction)
+    state[STOPS] += abs(side_1) * (1.0 - abs(after_1)) + abs(side_2) * (1.0 - abs(after_2))
     moved_1, moved_2 = value(work, _X1, terms, u), value(work, _X2, terms, u)
 
     way_1 = length * integral(work, _X1, terms, u) if ramp != 0.0 or two.driven > 0.0 else 0.0
@@ -219,11 +266,10 @@ def _stretch(
     state[MOTOR_COULOMB] += dry
     state[COULOMB] += dry
 
-    state[MOTOR_DIRECTION] = _side_after(state, work, _ON_1, terms, u, turn_1, side_1, to_1, motor.stiction)
-    if two.driven == 0.0:
-        state[DIRECTION] = _side_after(state, work, _ON_2, terms, u, turn_2, side_2, to_2, handle.stiction)
-    state[MOTOR], state[MOTOR_VELOCITY] = state[MOTOR] + moved_1, to_1
-    state[POSITION], state[VELOCITY] = state[POSITION] + moved_2, to_2
+    state[MOTOR] += moved_1
+    state[POSITION] += moved_2
+    state[MOTOR_VELOCITY], state[MOTOR_DIRECTION] = to_1, after_1
+    state[VELOCITY], state[DIRECTION] = to_2, after_2
     return t
 
 
@@ -297,37 +343,19 @@ def _passing(work: Array, on: int, terms: int, side: float, stiction: float) -> 
 
 
 @compiled
-def _velocity_after(
-    work: Array, own: int, terms: int, u: float, turn: float, side: float, stiction: float
-) -> float:
-    """A body's velocity at u: 0 where it stops, and where rounding has turned it."""
-    if side == 0.0 or (turn == u and stiction > 0.0):
-        return 0.0
-    v = value(work, own, terms, u)
-    return 0.0 if stiction > 0.0 and u > 0.0 and v * side <= 0.0 else v
-
-
-@compiled
-def _side_after(
-    state: Array,
-    work: Array,
-    on: int,
-    terms: int,
-    u: float,
-    turn: float,
-    side: float,
-    velocity: float,
-    stiction: float,
-) -> float:
-    """A body's direction at u; counts the stops."""
+def _after(
+    work: Array, own: int, on: int, terms: int, u: float, turn: float, side: float, stiction: float
+) -> tuple[float, float]:
+    """A body's velocity and direction at u: both 0 where it stops, or where rounding has turned it."""
     if stiction == 0.0:
-        return side
+        return value(work, own, terms, u), side
     if side == 0.0:  # what comes after 1 may hold it
-        return 0.0 if turn != u or u == 1.0 else (1.0 if value(work, on, terms, u) > 0.0 else -1.0)
-    if turn == u or (velocity == 0.0 and u > 0.0):
-        state[STOPS] += 1.0
-        return 0.0
-    return side
+        starts = turn == u and u < 1.0
+        return 0.0, (1.0 if value(work, on, terms, u) > 0.0 else -1.0) if starts else 0.0
+    v = value(work, own, terms, u)
+    if turn == u or (u > 0.0 and v * side <= 0.0):
+        return 0.0, 0.0
+    return v, side
 
 
 @compiled
