@@ -7,7 +7,7 @@ those just after it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -17,7 +17,7 @@ import numpy as np
 from zwidth.loop import kernel, two_masses
 from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Frame, Setup
-from zwidth.loop.start import WOUND, Start, held_at_start
+from zwidth.loop.start import OF_TWO, Start, held_at_start
 from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of
@@ -317,13 +317,16 @@ def _stored(setup: Setup, values: dict[str, Array]) -> dict[str, Any]:
         position=float(setup.state[POSITION]),
         regular=setup.timing is None,
     )
-    held = held_at_start(at, float(values["measured_position"].max()))
+    deepest = float(values["measured_position"].max())
+    held = held_at_start(at, deepest)
+    if setup.two is not None:
+        smooth = replace(at, plant=frame.plant._replace(damping=0.0, coulomb=0.0))
+        if held.force or held != held_at_start(smooth, deepest):
+            return {"stored_at_start_unknown": OF_TWO}
     whole = frame.arrivals.shape[1] == 0 and frame.offset == 0.0
     first = frame.late if frame.arrivals.shape[1] == 0 else int(frame.arrivals[0, 0])
     early = first * frame.points + 1
     helped = 0.0
-    if setup.two is not None and held.force:
-        return {"stored_at_start_unknown": WOUND}
     if not whole and held.force:  # the first force comes between two samples: the hand may turn there
         early += frame.points
         helped = abs(held.force) * _beyond_samples(setup, v[:early])
