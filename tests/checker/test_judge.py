@@ -71,7 +71,7 @@ def test_only_what_the_evidence_covers_may_be_stated(
             "zwidth.checker.verdict.verify", lambda _, scope=scope: Verified(True, "", scope=scope)
         )
         for contact in ("made and broken", "kept"):
-            stated = {"contact": contact, "fed_with": scope.fed_with}
+            stated = {"contact": contact, "fed_with": scope.fed_with, "transmission": scope.transmission}
             document = {"format": VERDICT, "outcome": outcome, "scope": stated}
             name = "certificate" if scope.shows in ("passive", "stable") else "witness"
             valid = judge({**document, name: evidence}).valid

@@ -8,8 +8,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from zwidth.data.logs.columns import QUANTITIES, meaning_of, recognise
+from zwidth.data.logs.columns import QUANTITIES, recognise
 from zwidth.data.logs.log import Log, contents, stated_period
+from zwidth.data.logs.meaning import meaning_of
 from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets, with_whole_stamps
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
@@ -137,18 +138,13 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
         return parquet_table(path, sheet)
     if sheet is not None:
         raise InputError(f'{path} is no workbook and has no sheets: leave sheet="{sheet}" out')
-    if start[:8] == b"\x89HDF\r\n\x1a\n" or start[512:520] == b"\x89HDF\r\n\x1a\n":
-        from zwidth.data.logs.scientific import hdf5_table
+    is_hdf5 = b"\x89HDF\r\n\x1a\n" in (start[:8], start[512:520])
+    if is_hdf5 or start.startswith((b"\x93NUMPY", b"MATLAB")) or path.suffix.lower() == ".mat":
+        from zwidth.data.logs.scientific import hdf5_table, matlab_table, numpy_table
 
-        return hdf5_table(path)
-    if start[:6] == b"\x93NUMPY":
-        from zwidth.data.logs.scientific import numpy_table
-
-        return numpy_table(path)
-    if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
-        from zwidth.data.logs.scientific import matlab_table
-
-        return matlab_table(path)
+        if is_hdf5:
+            return hdf5_table(path)
+        return numpy_table(path) if start.startswith(b"\x93NUMPY") else matlab_table(path)
     if start.startswith(b"\x89MCAP"):
         from zwidth.data.logs.served import mcap_head, served_table
 

@@ -22,6 +22,7 @@ n and over λ = 0, hyperbolic in a T and rational in z, so that the criterion ti
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -40,6 +41,9 @@ _BITS = 320
 
 _ROOM = 90
 """Bits below its largest coefficient at which the polynomial that is proved lies under the criterion."""
+
+_APART = 100
+"""Bits below two roots by which equal ones are taken apart: what is claimed is decided by the checker."""
 
 LARGEST_TURN = 2000
 """|a| T up to which a criterion is written down: far more than any cable asks for at its rate."""
@@ -101,7 +105,7 @@ class Elastic:
         forms, loop = self._forms, self.loop
         x = ball(cosine)
         z = acb(x, -(1 - x * x).sqrt())  # z⁻¹
-        sums = _Sums([ball(f) for f in forms[0]], x, z, ball(loop.part_delay))
+        sums = _Sums(forms[0], x, z)
         moved = [ball(f) for f in forms[2]]
         pulled, read = (
             sums.over([ball(f) for f in form], arb(0), False).real / 2 for form in (self._pulled, forms[1])
@@ -153,11 +157,9 @@ class Elastic:
     def _swing(self) -> tuple[list[arb], list[arb]]:
         """det(z − Φ) z⁻² and the motor's position after its held force, ascending in z⁻¹."""
         t, part = self.loop.period, self.loop.part_delay
-        m, k = ball(self.mass / t**2), ball(self.stiffness)
-        drag = ball((self.loop.damping + self.damping) / t)
-        half = drag / m / 2
-        root = acb(half * half - k / m).sqrt()
-        root = root if root.abs_lower() > 0 else root + acb(arb(2) ** (-self.bits // 2))
+        mass, drag = self.mass / t**2, (self.loop.damping + self.damping) / t
+        m, k, half = ball(mass), ball(self.stiffness), ball(drag / mass / 2)
+        root = _half_apart(drag / mass / 2, self.stiffness / mass)
 
         def moved(time: arb) -> tuple[arb, arb, arb, arb]:
             """φ₁₂, φ₂₂ and the position and speed after a force of 1 held so long."""
@@ -188,13 +190,11 @@ class Elastic:
 class _Sums:
     """Σ over n of what is rational in λ, at one θ, T = 1."""
 
-    def __init__(self, form: list[arb], x: arb, z: acb, delay: arb) -> None:
-        self.form, self.x, self.z = form, x, z
-        half = acb(form[1] / form[2] / 2)
-        root = (half * half - form[0] / form[2]).sqrt()
-        if not root.abs_lower() > 0:  # two equal roots: what is claimed is decided elsewhere
-            root += half * arb(2) ** -200
-        self.squares = half + root, half - root
+    def __init__(self, form: Sequence[Fraction], x: arb, z: acb) -> None:
+        self.form, self.x, self.z = [ball(f) for f in form], x, z
+        half = form[1] / form[2] / 2
+        root = _half_apart(half, form[0] / form[2])
+        self.squares = ball(half) + root, ball(half) - root
         self.roots = [square.sqrt() for square in self.squares]
         self.falls = [a.cosh() - x for a in self.roots]
         top = self.falls[0] * self.falls[1]
@@ -215,6 +215,12 @@ class _Sums:
             wave = early.cosh() - z * late.cosh() if odd else (early.sinh() + z * late.sinh()) / a
             total += share * wave / (2 * fall)
         return total
+
+
+def _half_apart(half: Fraction, product: Fraction) -> acb:
+    """√(half² − product) of two roots; of equal ones so little that nothing changes by it."""
+    found, least = acb(ball(half**2 - product)).sqrt(), abs(ball(half)) * arb(2) ** -_APART
+    return found if found.abs_lower() > least else acb(least)
 
 
 def _at(coefficients: tuple[int, ...], z: acb) -> acb:
@@ -270,7 +276,7 @@ class ElasticRefutation:
 @lru_cache(maxsize=256)
 def decide_elastic(elastic: Elastic) -> ElasticProof | ElasticRefutation:
     """Decide the criterion, stability and static stiffness."""
-    at_one = sum(elastic.loop.numerator)
+    loop = elastic.loop
     polynomial, shift = elastic.polynomial
     try:
         sign = prove_nonnegative(polynomial)
@@ -282,7 +288,8 @@ def decide_elastic(elastic: Elastic) -> ElasticProof | ElasticRefutation:
         return ElasticRefutation("criterion", sign) if below else ElasticRefutation("too close to zero")
     if not elastic.held:
         return ElasticRefutation("too close to zero" if elastic.held is None else "unstable")
-    if at_one < 0:
+    # k H/(k + H) at rest: what is stable has k D(1) + N(1) of the sign of D's first coefficient
+    if sum(loop.numerator) * loop.denominator[0] < 0:
         return ElasticRefutation("negative static stiffness")
     scale = Fraction(2) ** -shift
     return ElasticProof(tuple(Fraction(int(c)) * scale for c in polynomial.coeffs()), sign)
