@@ -93,7 +93,6 @@ REFUSED = {
     "limit": lambda d: zw.limit(d, WALL),
     "limit without grid": lambda d: zw.limit(d, WALL, iterate=False),
     "available storage": lambda d: zw.available_storage(d, WALL, penetration=0.001, speed=0.1),
-    "simulate": lambda d: zw.simulate(d, WALL, zw.operators.Finger(), 0.1),
     "batch": lambda d: zw.simulation.simulate_batch(
         d, WALL, zw.operators.Finger(), 0.1, vary={"environment.stiffness": [100, 200]}
     ),
@@ -230,7 +229,6 @@ def test_options_take_the_place_of_the_file(err):
     [
         "check it.toml --stiffness 100",
         "limit it.toml --stiffness 100",
-        "simulate it.toml --stiffness 100 --operator finger --duration 0.1",
         "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1",
         "sweep it.toml --stiffness 100 --vary 'rate=1000,2000'",
         "compare it.toml --stiffness 100",

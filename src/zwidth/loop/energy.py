@@ -1,8 +1,9 @@
 """The joules of a trace, what crosses the port, is stored, is lost: two balances that must close.
 
-    device   ΔE_k = W_h + W_a − E_b − E_c
+    device   ΔE_k + ΔE_t = W_h + W_a − E_b − E_c − E_ct
     hand     W_s = W_h + ΔE_s + E_d + ΔE_m
 
+ΔE_t and E_ct are of the spring and the damper of a transmission, 0 of a device without one.
 W_h is what the hand puts into the device through the port.  A loop is passive
 if W_h(t) + E(0) ≥ 0 for every hand and every t (Colgate & Schenkel 1997), with
 
@@ -41,12 +42,17 @@ if TYPE_CHECKING:
 ROUNDING = 1e-12
 """Of the energy moved: what is less is no energy."""
 
+_INSIDE = ("transmission_energy", "transmission_loss")
+"""Only of a device with a transmission."""
+
 _ROWS = {
     "hand_work": "the hand put into the device",
     "actuator_work": "the actuator put into the device",
     "viscous_loss": "lost in viscous friction",
     "coulomb_loss": "lost in Coulomb friction",
     "kinetic_energy": "kinetic energy gained",
+    "transmission_energy": "spring of the transmission gained",
+    "transmission_loss": "lost in the transmission's damper",
     "hand_source_work": "the muscles put into the hand",
     "hand_spring_energy": "spring of the hand gained",
     "hand_damper_loss": "lost in the hand's damper",
@@ -70,12 +76,20 @@ class Ledger(Shown):
         values = self.trace[name].values
         return np.asarray(values - values[0], dtype=np.float64)
 
+    @property
+    def _names(self) -> list[str]:
+        return [name for name in _ROWS if name not in _INSIDE or name in self.trace]
+
     @cached_property
     def residual(self) -> Array:
-        """W_h + W_a − E_b − E_c − ΔE_k at every instant [J]: 0 but for rounding."""
+        """W_h + W_a − E_b − E_c − E_ct − ΔE_k − ΔE_t at every instant [J]: 0 but for rounding."""
         c = self._change
         given = c("hand_work") + c("actuator_work")
-        return given - c("viscous_loss") - c("coulomb_loss") - c("kinetic_energy")
+        given = given - c("viscous_loss") - c("coulomb_loss") - c("kinetic_energy")
+        for name in _INSIDE:
+            if name in self.trace:
+                given = given - c(name)
+        return given
 
     @cached_property
     def hand_residual(self) -> Array:
@@ -87,7 +101,7 @@ class Ledger(Shown):
     @cached_property
     def moved(self) -> float:
         """The energy moved: every variable's largest change, summed [J]; the measure of a residual."""
-        return float(sum(np.abs(self._change(name)).max() for name in _ROWS))
+        return float(sum(np.abs(self._change(name)).max() for name in self._names))
 
     @property
     def closes(self) -> bool:
@@ -126,7 +140,7 @@ class Ledger(Shown):
     @property
     def totals(self) -> dict[str, float]:
         """The change of each energy from the first instant to the last [J]."""
-        return {name: float(self._change(name)[-1]) for name in _ROWS}
+        return {name: float(self._change(name)[-1]) for name in self._names}
 
     def to_dict(self) -> dict[str, Any]:
         """Totals and residuals, units in the keys."""
@@ -143,7 +157,7 @@ class Ledger(Shown):
         """What people read: each total in words [J]; the hand's own only where it has any."""
         totals = self.totals
         own = any(totals[name] for name in ("hand_spring_energy", "hand_damper_loss", "hand_kinetic_energy"))
-        shown = [name for name in _ROWS if own or not name.startswith("hand_") or name == "hand_work"]
+        shown = [name for name in totals if own or not name.startswith("hand_") or name == "hand_work"]
         rows = [(_ROWS[name], totals[name]) for name in shown]
         worst = float(max(np.abs(self.residual).max(), np.abs(self.hand_residual).max()))
         rows += [("energy balance error, at most", worst), ("the hand got out at most", self.got_out)]
@@ -160,7 +174,7 @@ class Ledger(Shown):
 
 def ledger(trace: AnyTrace) -> Ledger:
     """The ledger of a trace."""
-    missing = [name for name in _ROWS if name not in trace]
+    missing = [name for name in _ROWS if name not in _INSIDE and name not in trace]
     if missing:
         raise InputError(f"this Dataset is no trace: it lacks {', '.join(missing)}")
     return Ledger(trace)

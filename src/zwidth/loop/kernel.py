@@ -111,7 +111,7 @@ def run(
     for k in range(first, last):
         final = k == samples
         h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
-        reading, command = sample(k, points, state, law, memory, missed, commands, record)
+        reading, command = sample(k, points, state[POSITION], state, law, memory, missed, commands, record)
         if free:
             record[R_READING, k], record[R_COMMAND, k] = reading, command
             f = command if late == 0 else (commands[k - late] if k >= late else state[FORCE])
@@ -225,6 +225,7 @@ def apply_due(
 def sample(
     k: int,
     points: int,
+    position: float,
     state: Array,
     law: Array,
     memory: Array,
@@ -237,7 +238,7 @@ def sample(
         reading = record[R_READING, (k - 1) * points] if k > 0 else 0.0
         command = commands[k - 1] if k > 0 else 0.0
     else:
-        reading = measured(state[POSITION], law[RESOLUTION], law[PHASE])
+        reading = measured(position, law[RESOLUTION], law[PHASE])
         command = commanded(state, law, memory, reading)
     commands[k] = command
     return reading, command

@@ -12,6 +12,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
+from zwidth.loop import two_masses
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, Plant
 from zwidth.loop.start import rest_position
@@ -52,6 +53,7 @@ class Setup:
     state: Array
     frame: Frame
     plain: bool
+    two: Array | None = None  # of `two_masses`, with a transmission
 
     @property
     def plant_numbers(self) -> Array:
@@ -72,18 +74,20 @@ def prepare(
     timing: Timing | None = None,
     points_per_sample: int = 1,
     single: bool = False,
+    flexible: bool = False,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
 
-    `single` is of the `LoopContext`.
+    `single` is of the `LoopContext`; `flexible` allows a transmission.
     """
     law, placed = as_environment(environment), initial_position is not None
     laid = laid_out(
         device, law, operator, duration, {}, placed=placed, amplifier=amplifier, timing=timing,
-        points_per_sample=points_per_sample, single=single,
+        points_per_sample=points_per_sample, single=single, flexible=flexible,
     )  # fmt: skip
     start = laid.starts(initial_position, initial_velocity, encoder_phase)
     states, numbers, memories = started([laid], np.array([start]))
+    two = two_masses.numbers_of(device, laid.operator, laid.frame.plant, MOST_PIECES) if flexible else None
     return Setup(
         device=device,
         environment=law,
@@ -92,9 +96,10 @@ def prepare(
         encoder_phase=start[2],
         law=numbers[0],
         memory=memories[0],
-        state=states[0],
+        state=states[0] if two is None else two_masses.state_of(states[0]),
         frame=laid.frame,
         plain=laid.plain,
+        two=two,
     )
 
 
@@ -145,6 +150,7 @@ def laid_out(
     timing: Timing | None = None,
     points_per_sample: int = 1,
     single: bool = False,
+    flexible: bool = False,
 ) -> Laid:
     """Everything but the start checked and laid out; `placed` where somebody chose it.
 
@@ -157,7 +163,8 @@ def laid_out(
         If anything cannot be simulated.
     """
     rest, operator = _at_rest(device, law, operator, placed, known)
-    frame = frame_of(device, operator, duration, amplifier, timing, points_per_sample, known)
+    moved = device.motor_side if flexible and isinstance(device, Device) else device
+    frame = frame_of(moved, operator, duration, amplifier, timing, points_per_sample, known)
     if operator.kinematic:
         assert frame.signals.position is not None
         rest = float(frame.signals.position[0])
@@ -245,7 +252,7 @@ def frame_of(
         return found
     if not isinstance(device, Device):
         raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
-    require_rigid(device, "a simulated touch")
+    require_rigid(device, "this loop")
     if not isinstance(operator, Operator):
         raise InputError(
             f"operator is a hand, such as zwidth.operators.Finger(), got {type(operator).__name__}"
@@ -439,6 +446,7 @@ def _number(value: object, what: str) -> float:
     return number
 
 
-def empty_record(frame: Frame) -> tuple[Array, Array, Array]:
-    """(commands, record, work) to run into."""
-    return np.zeros(frame.samples + 1), np.empty((RECORDED, frame.columns)), np.zeros(WORK)
+def empty_record(frame: Frame, two: bool = False) -> tuple[Array, Array, Array]:
+    """(commands, record, work) to run into, those of two masses with all that they need."""
+    rows, work = (two_masses.RECORDED_OF_TWO, two_masses.WORK_OF_TWO) if two else (RECORDED, WORK)
+    return np.zeros(frame.samples + 1), np.empty((rows, frame.columns)), np.zeros(work)

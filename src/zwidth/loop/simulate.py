@@ -20,6 +20,7 @@ from zwidth.loop.runs import run_plain
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import Trace, build_trace
+from zwidth.loop.two_masses import run_two
 from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.device.device import Device
 from zwidth.model.operator.operator import Operator
@@ -82,6 +83,7 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a hand on the device, ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly.
 
+    Of a device with a `Transmission` two masses, see there; the hand is on the handle.
     Of a `Pair`, ``simulate(pair, leader, follower, duration)`` with what holds either arm, see
     `simulation.simulate_pair`.
 
@@ -99,7 +101,7 @@ def simulate(
         x at t = 0 [m; rad], > 0 inside the wall; by default where the operator starts.  For a law on
         both sides of x = 0 that is where the law is at rest, unless the operator's own start is given.
     initial_velocity
-        ẋ at t = 0 [m/s; rad/s].
+        ẋ at t = 0 [m/s; rad/s], of motor and handle.
     encoder_phase
         φ in x_m = Δ floor(x/Δ + φ), 0 ≤ φ < 1 [counts].
     amplifier
@@ -174,8 +176,8 @@ def _simulated_one(
     progress: Progress | None = None,
     **how: Any,
 ) -> Trace:
-    setup = prepare(device, environment, operator, duration, **how)
-    commands, record, work = empty_record(setup.frame)
+    setup = prepare(device, environment, operator, duration, flexible=True, **how)
+    commands, record, work = empty_record(setup.frame, setup.two is not None)
     state, memory = setup.state.copy(), setup.memory.copy()
     done = run_setup(setup, state, memory, work, commands, record, progress)
     if state[FAULT] != 0.0:
@@ -219,13 +221,14 @@ def run_samples(
     record: NDArray[np.float64],
 ) -> None:
     """Take the samples `first` … `last` − 1, each with the interval behind it; can be called again."""
-    numbers, law, late = setup.plant_numbers, setup.law, setup.frame.late
+    law, late = setup.law, setup.frame.late
     force, anchor, target, switch = setup.frame.optional()
-    if setup.plain:
+    if setup.plain and setup.two is None:
         period = float(setup.frame.lengths[0])
-        run_plain(first, last, state, numbers, law, late, period, force, commands, record)
+        run_plain(first, last, state, setup.plant_numbers, law, late, period, force, commands, record)
         return
-    run(
+    step, numbers = (run, setup.plant_numbers) if setup.two is None else (run_two, setup.two)
+    step(
         first, last, setup.frame.points, state, numbers, law, memory, work,
         late, setup.frame.offset, setup.frame.lengths, setup.frame.arrivals, setup.frame.missed,
         force, anchor, target, switch, commands, record,

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 DOWNHILL = "the spring pushes away for ever at one end, so that what it holds has no bound"
 IN_A_CHAIN = "laws in a chain may hold energy of their own"
 LOADED = "the scene is loaded where the touch starts, and pushes the handle"
+OF_TWO = "where the law pushes at the start, or a count hides its edge, no bound is known with a transmission"
 ON_THE_WAY = "the amplifier has not yet reached the force of the law when the touch starts"
 
 

@@ -42,7 +42,7 @@ from zwidth.quantity.elementary import exp, expm1, log
 
 _MOST_EVENTS = 100_000
 _BISECTIONS = 200
-_ROUNDING = 4 * 2.3e-16
+ROUNDING = 4 * 2.3e-16
 """Of the sum of forces, relative to their sizes."""
 
 
@@ -72,7 +72,7 @@ def advance(
         left = h - elapsed
         if left <= 0.0:
             return
-        ramp, reach = _slewing(state, plant)
+        ramp, reach = slewing(state, plant)
         ending = reach <= left  # the force reaches its goal inside
         if ending:
             left = reach
@@ -139,7 +139,7 @@ def glide(
 
 
 @compiled
-def _slewing(state: Array, plant: Plant) -> tuple[float, float]:
+def slewing(state: Array, plant: Plant) -> tuple[float, float]:
     """(df_a/dt, time until the goal): a force that a limited voltage drives; (0, ∞) otherwise."""
     gap = state[GOAL] - state[FORCE]
     if plant.slew == 0.0 or gap == 0.0:
@@ -159,7 +159,7 @@ def _stretch(
     drive = Drive(force, slack, speed, external, plant.stiffness * speed - ramp, ramp, transient)
     if state[DIRECTION] == 0.0:
         size = abs(force) + abs(pull) + abs(drag) + abs(state[FORCE]) + abs(state[GOAL])
-        if _holds(drive, plant, _ROUNDING * size):
+        if _holds(drive, plant, ROUNDING * size):
             return _rest(state, plant, drive, h)
         state[DIRECTION] = 1.0 if external > 0.0 else -1.0
     if drive.rate == 0.0 and transient == 0.0 and plant.stiffness == 0.0:

@@ -7,18 +7,20 @@ those just after it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from zwidth.loop import kernel
+from zwidth.loop import kernel, two_masses
 from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Frame, Setup
-from zwidth.loop.start import Start, held_at_start
+from zwidth.loop.start import OF_TWO, Start, held_at_start
+from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,8 +68,21 @@ VARIABLES = {
     "hand_spring_energy": Variable("E_s", "energy in the hand's spring", 3),
     "hand_damper_loss": Variable("E_d", "energy lost in the hand's damper", 3),
     "hand_kinetic_energy": Variable("E_m", "kinetic energy of the hand's mass", 3),
+    "motor_position": Variable("x_1", "position of the motor; position is that of the handle", 0),
+    "motor_velocity": Variable("v_1", "velocity of the motor; velocity is that of the handle", 1),
+    "transmission_force": Variable(
+        "f_t", "force of the transmission on the handle, positive into the wall", 2
+    ),
+    "motor_viscous_loss": Variable("E_b1", "of the viscous loss, that on the motor's side", 3),
+    "motor_coulomb_loss": Variable("E_c1", "of the Coulomb loss, that on the motor's side", 3),
+    "motor_kinetic_energy": Variable("E_k1", "of the kinetic energy, that of the motor", 3),
+    "transmission_energy": Variable("E_t", "energy in the spring of the transmission", 3),
+    "transmission_loss": Variable("E_ct", "energy lost in the damper of the transmission", 3),
 }
-"""Every variable of a trace, in the order of its files."""
+"""Every variable of a trace, in the order of its files; with a transmission energies are of both sides."""
+
+SOMETIMES = {"anchor_position", *(name for name in VARIABLES if name.startswith(("motor_", "transmission_")))}
+"""What not every trace has: the one if something draws to it, the others of a device with a transmission."""
 
 
 class Labelled(NamedTuple):
@@ -126,7 +141,11 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> Trace:
     whole = setup.frame.columns
     finished = min(whole, done * setup.frame.points if done <= setup.frame.samples else whole)
     columns = before_overflow(record, finished)
-    values = values_of(setup.frame, record, columns)
+    values = (
+        values_of(setup.frame, record, columns)
+        if setup.two is None
+        else _values_of_two(setup, record, columns)
+    )
     device = setup.device
     units = (*UNITS[device.motion], "J")
     variables = {
@@ -208,6 +227,31 @@ def values_of(frame: Frame, record: Array, columns: int) -> dict[str, Array]:
     return values
 
 
+def _values_of_two(setup: Setup, record: Array, columns: int) -> dict[str, Array]:
+    """The variables of motor and handle: those of a mass that the transmission pushes, and the motor's."""
+    assert setup.two is not None
+    two, own = two_masses.packed_two(setup.two), record[:, :columns].copy()
+    x1, v1 = own[two_masses.R_MOTOR], own[two_masses.R_MOTOR_VELOCITY]
+    twist, apart = x1 - own[kernel.R_POSITION], v1 - own[kernel.R_VELOCITY]
+    inside = two.spring * twist + two.damper * apart
+    own[kernel.R_ACTUATOR] = -inside
+    values = values_of(setup.frame._replace(plant=two.handle), own, columns)
+    values["actuator_force"] = record[kernel.R_ACTUATOR, :columns]
+    motor = 0.5 * two.motor.mass * v1 * v1
+    values["kinetic_energy"] = values["kinetic_energy"] + motor
+    return {
+        **values,
+        "motor_position": x1,
+        "motor_velocity": v1,
+        "transmission_force": inside,
+        "motor_viscous_loss": own[two_masses.R_MOTOR_VISCOUS],
+        "motor_coulomb_loss": own[two_masses.R_MOTOR_COULOMB],
+        "motor_kinetic_energy": motor,
+        "transmission_energy": 0.5 * two.spring * twist * twist,
+        "transmission_loss": own[two_masses.R_INSIDE_LOSS],
+    }
+
+
 def _held(values: Array, points: int, columns: int) -> Array:
     """One value per interval at every instant; the last interval's at the end."""
     repeated = np.repeat(values, points)
@@ -273,7 +317,12 @@ def _stored(setup: Setup, values: dict[str, Array]) -> dict[str, Any]:
         position=float(setup.state[POSITION]),
         regular=setup.timing is None,
     )
-    held = held_at_start(at, float(values["measured_position"].max()))
+    deepest = float(values["measured_position"].max())
+    held = held_at_start(at, deepest)
+    if setup.two is not None:
+        smooth = replace(at, plant=frame.plant._replace(damping=0.0, coulomb=0.0))
+        if held.force or held != held_at_start(smooth, deepest):
+            return {"stored_at_start_unknown": OF_TWO}
     whole = frame.arrivals.shape[1] == 0 and frame.offset == 0.0
     first = frame.late if frame.arrivals.shape[1] == 0 else int(frame.arrivals[0, 0])
     early = first * frame.points + 1
@@ -330,6 +379,11 @@ def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
         f"hand_{device.key('damping')}": plant.hand_damping,
         "stops": stops,
     }
+    if device.transmission is not None:
+        kinds = parameters_of(Transmission)
+        for key, value in device.transmission.parameters().items():
+            result[f"transmission_{kinds[key].quantity.key_for(device.motion)}"] = float(value)  # type: ignore[arg-type]
+        result["encoder"] = device.transmission.encoder
     if device.force_limit is not None:
         result[device.key("force_limit")] = float(device.exact("force_limit"))
     return result

@@ -83,6 +83,8 @@ def trace_headline(trace: AnyTrace) -> Padding:
 def _about(trace: AnyTrace, hand: str) -> Iterator[tuple[str, str]]:
     about = trace.attrs
     yield "device", plain(str(about["device"]), 60)
+    if "transmission_force" in trace:
+        yield "transmission", f"positions are of the handle, the encoder reads the {about['encoder']}"
     yield "environment", plain(str(about["environment"]), 200)
     yield "hand", plain(str(about["operator"]), 200)
     if hand:

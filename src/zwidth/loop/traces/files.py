@@ -22,7 +22,17 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.loop.pair.simulate import ARMS, labelled
 from zwidth.loop.pair.simulate import FORMAT as OF_A_PAIR
-from zwidth.loop.trace import FORMAT, SAMPLED, UNITS, VARIABLES, Labelled, Trace, along_time, attributes_of
+from zwidth.loop.trace import (
+    FORMAT,
+    SAMPLED,
+    SOMETIMES,
+    UNITS,
+    VARIABLES,
+    Labelled,
+    Trace,
+    along_time,
+    attributes_of,
+)
 from zwidth.missing import did_you_mean
 from zwidth.reading import check_hdf5, check_parquet, shown_only
 from zwidth.writing import check_target, first_line, writing_whole
@@ -129,7 +139,7 @@ def _refuse_foreign(trace: xr.Dataset, what: str) -> None:
     wrong = [key for key, fits in needed.items() if not fits(trace.attrs.get(key))]
     if wrong:
         raise InputError(f"{what} is no whole zwidth trace: its attribute {wrong[0]} is missing or wrong")
-    missing = [name for name in VARIABLES if name not in trace and name != "anchor_position"]
+    missing = [name for name in VARIABLES if name not in trace and name not in SOMETIMES]
     if missing:
         raise InputError(f"{what} is no whole zwidth trace: it lacks {', '.join(missing)}")
 

@@ -99,6 +99,8 @@ def draw_position(axes: Axes, trace: xr.Dataset) -> None:
         read = trace["measured_position"].values * factor
         axes.step(time, read, where="post", color=SKY, lw=1, label="read by the encoder")
     axes.plot(*thinned(time, x * factor), color=BLUE, label="position")
+    if "motor_position" in trace:
+        axes.plot(*thinned(time, trace["motor_position"].values * factor), color=GREEN, lw=1, label="motor")
     low, high = axes.get_ylim()
     if high > 0:
         axes.axhspan(0, high, color=GREY, alpha=0.12, lw=0)
@@ -133,6 +135,7 @@ def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
         "kinetic_energy": (BLUE, "kinetic"),
     }
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
+    lost = lost + trace["transmission_loss"].values if "transmission_loss" in trace else lost
     curves = {name: lost if name == "loss" else trace[name].values for name in names}
     factor, unit = scale([max(float(np.abs(c).max()) for c in curves.values())], "J")
     for name, (colour, text) in names.items():
