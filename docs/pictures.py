@@ -31,7 +31,7 @@ from zwidth.show.plots.identified import identification_figure
 from zwidth.show.plots.scores import laws_figure
 
 STATIC = Path(__file__).parent / "_static"
-sys.path.insert(0, str(STATIC.parents[1] / "examples"))
+sys.path[:0] = [str(STATIC.parents[1] / "examples"), str(STATIC.parent / "_ext")]
 
 Numbers = dict[str, float]
 
@@ -97,6 +97,18 @@ def _identified() -> Any:
         return zw.identify(zw.read_log(Path(folder) / "paddle.csv", resolution="22.4um"))
 
 
+def _cable(steps: int = 90) -> Any:
+    import cables
+
+    return cables.curves([10 * 500 ** (i / steps) for i in range(steps + 1)])
+
+
+def _cable_figure(found: Any) -> Figure:
+    import cables
+
+    return cables.figure(found)
+
+
 def _law_numbers(found: Any) -> Numbers:
     felt = found.scores.static_stiffness
     return {f"felt_{name}_N_per_m": float(felt.sel(law=name)) for name in ("wall", "virtual-coupling")}
@@ -136,6 +148,13 @@ PICTURES = {
         plots.z_width_figure,
         _map_numbers,
         partial(_map, (20, 300)),
+    ),
+    "cable": Picture(
+        "python docs/pictures.py cable",
+        _cable,
+        _cable_figure,
+        lambda found: {f"{name}_N_per_m": points[len(points) // 2][1] for name, points in found.items()},
+        partial(_cable, 2),
     ),
     "identify": Picture(
         "zwidth identify paddle.csv --resolution 22.4um --stiffness 250",

@@ -8,6 +8,7 @@ from functools import partial
 from importlib import import_module
 from pathlib import Path
 
+import cables
 import chips
 import papers
 import trust
@@ -322,12 +323,18 @@ def chip_costs() -> str:
     return chips.costs(markdown)
 
 
+def cable_limits() -> str:
+    """The stiffest wall against the stiffness of a cable."""
+    return cables.table(markdown)
+
+
 def papers_by_figure() -> str:
     """Every figure and table of the founding papers, beside what is computed now."""
     return papers.page(markdown)
 
 
 TABLES: dict[str, Callable[[], str]] = {
+    "cable_limits": cable_limits,
     "chip_costs": chip_costs,
     "connection_keys": connection_keys,
     "connection_options": connection_options,

@@ -72,6 +72,19 @@ def test_a_motion_that_is_commanded_has_no_cause(kind, device, tmp_path):
         assert known.seen.aimed > 0.3
 
 
+def test_the_target_is_that_of_the_run_that_is_looked_at(tmp_path):
+    """Of two in one file, whose times each begin at 0, the longer one; which it is is told."""
+    time = {"time_s": np.arange(SAMPLES) * PERIOD}
+    before, now = (
+        time | followed(TARGETS[k]) | {"target_position_rad": TARGETS[k]} for k in ("steps", "sine")
+    )
+    both = {name: np.concatenate([before[name][:1500], values]) for name, values in now.items()}
+    one, two = (zw.diagnose(written(tmp_path / f"{len(c['time_s'])}.csv", c), JOINT) for c in (now, both))
+    assert two.findings[0] == "run 2 of 2 is looked at, the longest: the others are left out"
+    assert two.record == one.record
+    assert two.seen.aimed == pytest.approx(one.seen.aimed, rel=1e-6)
+
+
 @pytest.mark.parametrize("target", ["still", "slow"])
 def test_a_late_force_is_named_about_a_target_that_does_not_shake(target, tmp_path):
     """Three samples late the loop shakes by itself, wherever it is led to."""

@@ -160,12 +160,7 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
     bare = {name: values for name, values in shaken.items() if "follower" not in name or "position" in name}
     sides = {k.replace("leader", "left").replace("follower", "right"): v for k, v in shaken.items()}
     slider = zw.Device(mass=0.1, damping=1, coulomb_friction=0, sample_period=PERIOD)
-    path, data = written(tmp_path / "arms.csv", shaken), tmp_path / "set" / "data" / "chunk-000"
-    data.mkdir(parents=True)
-    for k in range(2):
-        (data / f"episode_00000{k}.parquet").write_bytes(b"PAR1")
-    (tmp_path / "set" / "meta").mkdir()
-    (tmp_path / "set" / "meta" / "info.json").write_text("{}", encoding="utf-8")
+    path = written(tmp_path / "arms.csv", shaken)
     for ask, message in (
         (
             lambda: zw.diagnose_pair(written(tmp_path / "bare.csv", bare)),
@@ -175,7 +170,6 @@ def test_what_is_missing_is_asked_for_of_its_arm(shaken, tmp_path):
         (lambda: zw.diagnose_pair(zw.samples.path("shaking.csv")), "no columns of a leader"),
         (lambda: zw.diagnose_pair(path, zw.Pair(slider, slider, stiffness=1)), "which is meant"),
         (lambda: zw.diagnose(written(tmp_path / "sides.csv", sides)), "If these are two arms"),
-        (lambda: zw.diagnose(tmp_path / "set"), r"LeRobot dataset.*episode_000000\.parquet"),
     ):
         with pytest.raises(zw.InputError, match=message):
             ask()

@@ -70,6 +70,20 @@ arm:
       "no": {p: 100000, i: 2.0, d: 0.0}
 /**: {impedance: {ros__parameters: {k_gains: [500.0], d_gains: [30.0]}}}
 """
+MOVED = """
+/**/controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+    own: {type: maker/JointPositionCommandController}
+    torque: {type: maker/TorqueCommandController}
+    state: {type: joint_state_broadcaster/JointStateBroadcaster}
+/**/arm: {ros__parameters: {joints: [a], command_interfaces: [COMMANDS]}}
+/**/own: {ros__parameters: {robot_name: x}}
+/**/torque: {ros__parameters: {robot_name: x, interface_name: effort}}
+"""
+SERVO = "a: {{ros__parameters: {{{}, reference_and_state_interfaces: [{}], gains: {{j: {{p: 9}}}}}}}}"
+ONE_TYPE = "a: {{type: {}, joints: [x]}}"
+GAINS_K = "a: {ros__parameters: {k_gains: [5], d_gains: [1]}}"
 COMPLIANCE = "c: {ros__parameters: {stiffness: {trans_x: 500, trans_y: 500, trans_z: 500}}}"
 PID = """
 robot:
@@ -155,9 +169,14 @@ def test_what_a_file_has_beside_is_told(tmp_path):
     for part in (
         "robot/states (joint_state",
         'robot, wheel, pid: gains act on "effort',
-        "robot, rail, gains",
+        'robot/rail (position_controllers/JointTrajectoryController): it commands "position_controllers/',
     ):
         assert part in left
+    servo = SERVO.format("command_interface: effort", "position, velocity")
+    assert laws(read_controllers(written(tmp_path, NAME, servo))) == [("j", 9, 0)]
+    moved = read_controllers(written(tmp_path, NAME, GAINS_K + MOVED.replace("COMMANDS", "velocity")))
+    assert len(moved.joints) == 1
+    assert any('left out: /**/arm: it commands "velocity"' in note for note in moved.notes)
     both = read_controllers(written(tmp_path, NAME, TRAJECTORY + CARTESIAN + COMPLIANCE))
     assert (len(both.joints), len(both.cartesian)) == (2, 1)
     assert sum("left out" in note for note in both.notes) == 2
@@ -193,10 +212,21 @@ def test_dampers_of_ratios_and_of_crisp(tmp_path):
         (TASK.replace("k_pos_y: 300", "k_pos_y: 0"), "a damper without a spring"),
         ("joints: {a: {damping_ratio: 1}}", "kp: give a number"),
         (COMPLIANCE, "stiffness: of an admittance"),
+        (COMPLIANCE.replace("{stiff", "{command_interface: position, stiff"), "stiffness: of an admittance"),
         (FORCE, "pd_gains: of an admittance"),
         (FORCE.replace("pd_", "pid_"), "pid_gains: of an admittance"),
         ("a: {ros__parameters: {x: 1}}", "no gains of a controller"),
-        (TRAJECTORY.replace("[effort]", "[velocity]"), "where the command is an effort"),
+        (TRAJECTORY.replace("[effort]", "[velocity]"), "commanded by arm_controller: a hand there"),
+        (
+            MOVED.replace("COMMANDS", "position"),
+            "by /../arm, /../own: a hand there feels the drive's own loop",
+        ),
+        (MOVED.replace("COMMANDS", "effort"), "speeds are commanded by /../own: "),
+        (SERVO.format("command_interfaces: [position, velocity]", "position"), "are commanded by a: "),
+        (SERVO.format("command_interface: position", "position"), "are commanded by a: "),
+        (SERVO.format("command_interface: effort", "velocity, acceleration"), 'on "effort by velocity, '),
+        (ONE_TYPE.format("velocity_controllers/JointGroupVelocityController"), r"are commanded by a \("),
+        (ONE_TYPE.format("pos_vel_controllers/JointTrajectoryController"), r"are commanded by a \("),
         (CARTESIAN.replace(", z: 400.0", ""), "z is missing"),
     ],
 )

@@ -68,16 +68,27 @@ def test_a_fork_may_leave_out_compensation(tmp_path):
 
 
 def test_a_law_of_its_own_for_the_leader(tmp_path):
-    """`Bilateral`: local damping, on the host; a force that is fed back is refused."""
-    text = openarm() + openarm("Follower") + "Bilateral:\n  Kp: [60, 60, 60, 60, 8, 10, 8, 5]\n"
-    text += "  Kd: [3, 3, 3, 3, 0.2, 0.2, 0.2, 0.2]\n"
-    gains = zw.read_gains(written(tmp_path, "a.yaml", text + "  Kf: [0, 0, 0, 0, 0, 0, 0, 0]\n"))
+    """`Bilateral`: local damping, on the host, 0.3 of the compensation, none of the follower; notes say one
+    thing of Kd. A force that is fed back is refused, and so is the leader's law alone."""
+    text = "Bilateral:\n  Kp: [60, 60, 60, 60, 8, 10, 8, 5]\n  Kd: [3, 3, 3, 3, 0.2, 0.2, 0.2, 0.2]\n"
+    leader, follower = openarm() + text, openarm("Follower", Kp=[200] * 8)
+    gains = zw.read_gains(written(tmp_path, "a.yaml", leader + "  Kf: [0, 0, 0, 0, 0, 0, 0, 0]\n" + follower))
     joint = gains.joints[0]
-    assert (law(joint.leader), law(joint.follower)) == ((60, 0, 3), (240, 3, 0))
-    assert joint.leader.compensation == joint.follower.compensation
+    assert (law(joint.leader), law(joint.follower)) == ((60, 0, 3), (200, 3, 0))
+    whole = zw.read_gains(written(tmp_path, "b.yaml", openarm())).joints[0].leader.compensation
+    assert joint.leader.compensation == whole.scaled(Fraction(3, 10))
+    assert not joint.follower.compensation
     assert not gains.drives
-    with pytest.raises(zw.InputError, match="measured torque"):
-        zw.read_gains(written(tmp_path, "b.yaml", text + "  Kf: [0.1, 0, 0, 0, 0, 0, 0, 0]\n"))
+    assert [note for note in gains.notes if "on both sides" in note or "beyond the end" in note] == []
+    alone = zw.read_gains(written(tmp_path, "c.yaml", leader))
+    assert law(alone.joints[0].follower) == (240, 3, 0)
+    assert any("follower's gains: taken as those of LeaderArmParam" in note for note in alone.notes)
+    for name, refused, said in (
+        ("d.yaml", leader + "  Kf: [0.1, 0, 0, 0, 0, 0, 0, 0]\n", "measured torque"),
+        ("e.yaml", text, "the file with FollowerArmParam"),
+    ):
+        with pytest.raises(zw.InputError, match=said):
+            zw.read_gains(written(tmp_path, name, refused))
 
 
 def test_i2rt_has_local_damping_on_the_follower_alone(tmp_path):

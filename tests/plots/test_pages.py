@@ -108,7 +108,7 @@ def test_every_picture_is_made_by_a_command(pictures):
     assert [name for name in files if f"_static/{name}.png" not in pages] == []
 
 
-@pytest.mark.parametrize("name", ["check", "touch", "limit", "laws", "map", "identify"])
+@pytest.mark.parametrize("name", ["check", "touch", "limit", "laws", "map", "cable", "identify"])
 def test_a_picture_is_not_stale(pictures, name):
     """Its numbers and its words are those of today; `python docs/pictures.py` draws it anew."""
     assert list(pictures.stale(name)) == []

@@ -356,6 +356,21 @@ def test_what_another_command_reads_is_sent_there(tmp_path, name, part):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        '{"profiles": [{"data": [{"cls": "axis", "instance": 0, "cmd": "idlespring", "value": 127}]}]}',
+        '{"flash": [{"addr": "776", "val": "127"}]}',
+    ],
+)
+def test_settings_of_a_wheel_have_no_unit(tmp_path, text):
+    """Whatever they are given to."""
+    path = tmp_path / "profiles.json"
+    path.write_text(text, encoding="utf-8")
+    for ask in (lambda: load([path], {}), lambda: zw.read_gains(path)):
+        assert "settings of a force-feedback wheel (OpenFFBoard) without units" in message(ask)
+
+
+@pytest.mark.parametrize(
     ("overrides", "part"),
     [
         ({"stiffness": "5 kHz"}, 'command line: stiffness is in N/m; got "5 kHz", a frequency (1/s)'),

@@ -136,7 +136,7 @@ KINDS: dict[str, Kind] = {
     "delays": Kind(DELAYS, _proof(delays), _of_every_hand(KEPT)),
     "transmission": Kind(ELASTIC, _proof(elastic), scope.of_a_transmission(PASSIVE)),
     "transmission violation": Kind(
-        ELASTIC_VIOLATION, _proof(elastic_violation), _of_every_hand(KEPT, ACTIVE)
+        ELASTIC_VIOLATION, _proof(elastic_violation), scope.of_a_transmission(ACTIVE)
     ),
     "contact": Kind(CONTACT, _proof(contact), _of_every_hand(BROKEN)),
     "relaxing contact": Kind(RELAXING_CONTACT, _proof(relaxing_contact), scope.of_a_fed_law),

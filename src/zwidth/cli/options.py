@@ -10,6 +10,7 @@ import argparse
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 from zwidth.cli.parsing import Parameter, dest_of
 from zwidth.errors import InputError
@@ -146,29 +147,36 @@ def _bracket(unit: str) -> str:
     return f" [{unit}]" if unit not in ("", "1") else ""
 
 
-SHEET = {"--sheet NAME": "of a workbook, where several hold a recording"}
+SHEET = {"--sheet NAME": "of a workbook, where several hold a recording; of a LeRobot dataset an episode"}
 
 
 def pairs_of(option: str, typed: Sequence[str] | None, quantities: Sequence[str]) -> dict[str, str]:
     """What an option that may come several times says of each quantity."""
-    pairs = dict(_pair(option, text, quantities) for text in typed or ())
-    if len(pairs) < len(typed or ()):
-        raise InputError(f"{option} names a quantity twice; which one is meant?")
+    pairs: dict[str, str] = {}
+    for text in typed or ():
+        key, sign, value = text.partition("=")
+        name = key.strip().replace("-", "_")
+        if not sign or not value:
+            raise InputError(f"{option} is written {option} {quantities[1]}=VALUE, got {quoted(text)}")
+        if name not in quantities:
+            raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, quantities)}")
+        if name in pairs:
+            raise InputError(f"{option} names a quantity twice; which one is meant?")
+        pairs[name] = value
     return pairs
-
-
-def _pair(option: str, typed: str, quantities: Sequence[str]) -> tuple[str, str]:
-    key, sign, value = typed.partition("=")
-    name = key.strip().replace("-", "_")
-    if not sign or not value:
-        raise InputError(f"{option} is written {option} {quantities[1]}=VALUE, got {quoted(typed)}")
-    if name not in quantities:
-        raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, quantities)}")
-    return name, value
 
 
 _PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(None|…))\}")
 _OPTION_NAMES = {"columns": "--column", "units": "--unit", "scale": "--scale"}
+
+
+def reading_of(arguments: argparse.Namespace, quantities: Sequence[str]) -> dict[str, Any]:
+    """What is typed of the columns, as `read_log` takes it."""
+    reading = {}
+    for name, option in _OPTION_NAMES.items():
+        if pairs := pairs_of(option, getattr(arguments, name), quantities):
+            reading[name] = {k: None if name == "columns" and v == "none" else v for k, v in pairs.items()}
+    return reading
 
 
 @contextmanager
@@ -177,12 +185,14 @@ def as_options() -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise InputError(_PYTHON.sub(_as_option, _plain_options(sheet_option(str(error))))) from None
+        text = as_typed(str(error)).replace("sample_rate or sample_period", "--rate or --sample-period")
+        text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
+        raise InputError(re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)) from None
 
 
-def sheet_option(text: str) -> str:
-    """The name of a sheet, in a message, as it is typed here."""
-    return re.sub(r'\bsheet=("[^"]*")', r"--sheet \1", text)
+def as_typed(text: str) -> str:
+    """Columns and sheets, in a message, as they are typed here."""
+    return _PYTHON.sub(_as_option, re.sub(r'\bsheet=("[^"]*")', r"--sheet \1", text))
 
 
 def _as_option(found: re.Match[str]) -> str:
@@ -190,9 +200,3 @@ def _as_option(found: re.Match[str]) -> str:
     value = value if value is not None else {"None": "none"}.get(other, "…")
     written = f"'{quantity}={value}'" if " " in value else f"{quantity}={value}"
     return f"{_OPTION_NAMES[name]} {written}"
-
-
-def _plain_options(text: str) -> str:
-    text = text.replace("sample_rate or sample_period", "--rate or --sample-period")
-    text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
-    return re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)

@@ -45,6 +45,10 @@ Judge = Callable[[Device], Verdict]
 
 _TOO_CLOSE = "The criterion of motor, transmission and hand is too close to zero to tell its sign."
 _UNCONFIRMED = "A proof was found, but the independent checker did not confirm it within its bounds."
+_HIDDEN = (
+    "Numerator and denominator of H(z) share a root on or outside the unit circle: the controller carries a "
+    "mode that never dies out. Cancel it and check again."
+)
 _IF_IDEAL = (
     "With viscous friction alone and an ideal encoder this loop is passive. With the Coulomb friction of the "
     "motor's side, or the encoder's steps, it is proved only as far as what the motor feels of friction "
@@ -274,8 +278,8 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
             return replace(found, open=_TOO_CLOSE)
         found = replace(found, outcome="active", scope=scope.replace(contact=violation.contact))
         return replace(found, violation=violation)
-    if not is_ideal(device):
-        return replace(found, open=_IF_IDEAL)
+    if not (is_ideal(device) and elastic.loop.hidden_modes_decay):
+        return replace(found, open=_IF_IDEAL if elastic.loop.hidden_modes_decay else _HIDDEN)
     certificate = Certificate((_proof(elastic, setting, decision),))
     covered = certificate.covered()
     if covered is None or covered.shows != "passive":

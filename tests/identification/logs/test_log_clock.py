@@ -352,7 +352,7 @@ def test_a_large_fast_motion_is_no_overflow():
 @pytest.mark.parametrize(("arguments", "message"), [
     ({"position": np.full(500, 0.3)}, "never changes"),
     ({"position": walk() * 1e-5, "hand_force": np.full(3000, 1.5)}, "hand force never changes"),
-    ({"position": walk() * 1e-5, "hand_force": np.ones(7)}, "as many samples"),
+    ({"position": walk() * 1e-5, "hand_force": np.ones(7)}, "hand_force\" has 7 samples"),
     ({"position": ["a", "b"]}, "list of numbers"),
     ({"position": [1.0]}, "fewer than two"),
     ({"position": np.ones((4, 4))}, "2 dimensions"),

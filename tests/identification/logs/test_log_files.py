@@ -6,6 +6,7 @@ import bz2
 import gzip
 import io
 import json
+import shutil
 import sys
 from collections.abc import Iterable
 from functools import cache
@@ -22,6 +23,7 @@ import xarray as xr
 
 import zwidth as zw
 from zwidth.data.logs.columns import name_and_unit
+from zwidth.data.logs.table import LEFT_OUT
 from zwidth.data.logs.text import text_table
 
 HEADER = ("time_s", "position_mm", "force_N")
@@ -211,7 +213,7 @@ def lerobot_dataset(folder: Path, recording, about: dict[str, Any], names: Any) 
         ("so101_follower", "v2.1", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
         ("so101_follower", "v3.0", ["pan.pos", "gripper.pos"], "gripper.pos", "mostly 0 … 100"),
         ("so100", "v2.1", {"motors": ["main_pan", "main_gripper"]}, "main_pan", "mostly degrees"),
-        ("koch_follower", "v3.0", ["pan.pos", "gripper.pos"], "pan.pos", "mostly -100 … 100"),
+        ("koch_follower", "v3.0", [["pan.pos", "gripper.pos"]], "pan.pos", "mostly -100 … 100"),
         ("lekiwi", "v3.0", {"gripper.pos": 1, "pan.pos": 0}, "pan.pos", "since LeRobot 0.6.0"),
         ("openarm_follower", "v3.0", ["joint_1.pos", "joint_2.pos"], "joint_1.pos", "mostly degrees"),
         ("aloha", "v2.1", ["a"], "0", "use_degrees"),  # names that are not those of two numbers
@@ -230,6 +232,80 @@ def test_a_lerobot_dataset_is_a_folder_with_names(robot, version, names, column,
     blocks = np.concatenate([block.position for block in log.blocks()])
     assert np.abs(np.degrees(blocks) - 1e3 * recording.position[:1000]).max() < 1e-4
     assert {"no clock", "episodes"} <= {finding.kind for finding in log.findings}
+
+
+@pytest.mark.parametrize(
+    ("names", "ends"),  # of files, and the episode behind the last of each
+    [
+        (["chunk-000/episode_000000", "chunk-000/episode_000001", "chunk-001/episode_000002"], [1, 2, 3]),
+        (["chunk-000/file-000"], [3]),
+        (["chunk-000/file-000", "chunk-000/file-001"], [1, 3]),
+    ],
+    ids=["v2.1", "v3.0 in a file", "v3.0 in two"],
+)
+def test_a_folder_of_episodes_is_read_whole_or_one_by_its_number(names, ends, recording, tmp_path):
+    """By the folder, one inside it, one above it; above several each is named."""
+    folder = lerobot_dataset(tmp_path / "user" / "set", recording, {}, ["pan.pos", "b"])
+    data = folder / "data"
+    (whole,) = data.rglob("*.parquet")
+    table = pq.read_table(whole).append_column("task", pa.array([0] * 1000))
+    table = pa.concat_tables([table, table.slice(0, 300).set_column(3, "episode_index", pa.array([2] * 300))])
+    whole.unlink()
+    starts = {0: 0, 1: 500, 2: 1000, 3: 1300}
+    for name, first, end in zip(names, [0, *ends], ends, strict=False):
+        (data / name).parent.mkdir(exist_ok=True)
+        part = table.slice(starts[first], starts[end] - starts[first])
+        pq.write_table(part, data / f"{name}.parquet", row_group_size=200)
+    asked = {"columns": {"position": "observation.state[pan.pos]"}, "units": {"position": "deg"}}
+    for path in (folder, data, folder.parent, tmp_path):
+        log = zw.read_log(path, **asked)
+        assert (log.runs, log.samples) == (3, 1300)
+        assert any("3 episodes of a LeRobot dataset, 0 to 2" in finding.text for finding in log.findings)
+    log = zw.read_log(folder, **asked, sheet="1")
+    (block,) = log.blocks()
+    assert np.abs(np.degrees(block.position) - 1e3 * recording.position[500:1000]).max() < 1e-4
+    assert any("episode 1 of 3 episodes" in f.text and LEFT_OUT in f.text for f in log.findings)
+    for sheet in ("3", "first"):
+        with pytest.raises(zw.InputError, match=f'no episode "{sheet}": there are 3 .*0 to 2'):
+            zw.read_log(folder, **asked, sheet=sheet)
+    lerobot_dataset(tmp_path / "other", recording, {}, ["pan.pos", "b"])
+    with pytest.raises(zw.InputError, match=r'holds 2 LeRobot datasets, ".*other", ".*set": name one'):
+        zw.read_log(tmp_path, **asked)
+
+
+def test_what_is_no_folder_of_episodes_is_refused(recording, tmp_path):
+    first = {"time_s": recording.time, "position_m": recording.position}
+    for name in "ab":
+        pq.write_table(pa.table(first), tmp_path / f"{name}.parquet")
+    folder = lerobot_dataset(tmp_path / "set" / "one", recording, {}, None)
+    (whole,) = folder.rglob("*.parquet")
+    pq.write_table(
+        pq.read_table(whole).drop_columns("observation.state"), whole.with_name("file-001.parquet")
+    )
+    (tmp_path / "bare" / "meta").mkdir(parents=True)
+    (tmp_path / "bare" / "meta" / "info.json").write_text("{}", encoding="utf-8")
+    state = {"columns": {"position": "observation.state[0]"}, "units": {"position": "deg"}}
+    for path, asked, said in (
+        (tmp_path / "a.parquet", {"sheet": "1"}, 'no LeRobot dataset: leave sheet="1" out'),
+        (tmp_path / "bare", {}, "nothing is in .*data; name a file"),
+        (folder, state, 'file-001.* has no column "observation.state", as the first file'),
+    ):
+        with pytest.raises(zw.InputError, match=said):
+            zw.read_log(path, **asked)
+    whole.with_name("file-001.parquet").write_bytes(b"PAR1")
+    with pytest.raises(zw.InputError, match=r"file-001.parquet cannot be read"):
+        zw.read_log(folder, **state)
+    for name in ("file-000", "file-001"):
+        whole.with_name(f"{name}.parquet").write_bytes(b"version https://git-lfs.github.com/spec/v1\n")
+    for path in (folder, whole):
+        with pytest.raises(zw.InputError, match=r"file-000\.parquet is a pointer of Git LFS .* git lfs pull"):
+            zw.read_log(path, **state)
+    for inside in ("set", "bare"):
+        shutil.rmtree(tmp_path / inside)
+    with pytest.raises(
+        zw.InputError, match=r"no LeRobot dataset: name one of its files, such as .*a\.parquet"
+    ):
+        zw.read_log(tmp_path)
 
 
 def test_hdf5_groups_matrices_and_compounds(recording, tmp_path):

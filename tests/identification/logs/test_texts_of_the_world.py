@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth.data.logs.read import log_of, opened
 from zwidth.data.logs.text import text_table
 
 ROWS = [
@@ -31,11 +34,6 @@ HEADS = {
         "x-axis,1,2\nsecond,Volt,Ampere\n",
         "",
         {"x-axis": "second", "1": "Volt", "2": "Ampere"},
-    ),
-    "a count and its step": (
-        "X,CH1,CH2,Start,Increment\nSequence,Volt,Volt,-3.0E-03,1.0E-03\n",
-        ",,",
-        {"X": None, "CH1": "Volt", "CH2": "Volt", "Start": None, "Increment": None},
     ),
     "numbers beside names and units": (
         "spec A,spec A,spec A,,,\nTime,Position,Force,,20,80\ns,mm,N,,0.1,79\n",
@@ -65,6 +63,28 @@ def test_a_first_column_in_seconds_is_the_time(tmp_path):
     path.write_text("Source,CH1,CH2\nSecond,Volt,Volt\n" + rows(), encoding="utf-8")
     log = zw.read_log(path, columns={"position": "CH1"}, scale={"position": "1 mm/V"})
     assert log.sample_period == 1e-3
+
+
+@pytest.mark.parametrize("end", ["", ",", ",,"])
+@pytest.mark.parametrize("unit", ["Volt", "VOLT", "Unknown"])
+def test_a_sample_that_is_counted_is_at_start_and_increments(end, unit, tmp_path):
+    """As oscilloscopes of Rigol write it; what is lost shows in the count."""
+    path = tmp_path / "log.csv"
+    head = f"X,CH1,CH2,Start,Increment,\nSequence,Volt,{unit},-3.000000E-01,2.000000E-03\n"
+    lines = [f"{k},{x},{f}{end}\n" for k, (_, x, f) in enumerate(ROWS) if k not in (200, 201)]
+    path.write_text(head + "".join(lines), encoding="utf-8")
+    units = text_table(path).units
+    assert {name: units[name] for name in ("time", "CH1", "CH2")} == {
+        "time": "s",
+        "CH1": "Volt",
+        "CH2": None if unit == "Unknown" else unit,
+    }
+    log = zw.read_log(path, columns={"position": "CH1"}, scale={"position": "1 mm/V"})
+    blocks = list(log.blocks())
+    assert (log.sample_period, [block.time.size for block in blocks]) == (2e-3, [200, 398])
+    assert [block.time[0] for block in blocks] == [-0.3, pytest.approx(0.104)]
+    with pytest.raises(zw.InputError, match="no column is known to be the position"):
+        zw.read_log(path)
 
 
 RECORDS = {
@@ -104,6 +124,62 @@ def test_a_name_that_comes_late_is_no_part_of_the_table(tmp_path):
         zw.read_log(path)
 
 
+MONITORS = {
+    "Arduino": "{s} -> {x},{f}",
+    "PlatformIO": "{s} > {x}\t{f}",
+    "spaces": "{s} -> {x} {f}",
+    "names above": "{s} -> {x};{f}",
+    "names in each line": "{s} -> column 2:{x} column 3:{f}",
+    "JSON": '{s} -> {{"column 2": {x}, "column 3": {f}}}',
+}
+
+
+@pytest.mark.parametrize("name", MONITORS)
+def test_lines_behind_the_time_of_a_monitor(name, tmp_path):
+    """That time is a column, which goes on past midnight; a line of names may stand above."""
+    path, plain = tmp_path / "monitor.txt", tmp_path / "plain.csv"
+    stamps = [f"23:59:59.{k}" for k in range(800, 1000)] + [f"0:0:00.{k:03d}" for k in range(400)]
+    lines = [MONITORS[name].format(s=s, x=x, f=f) for s, (_, x, f) in zip(stamps, ROWS, strict=True)]
+    lines[:0] = ["23:59:59.700 -> column 2;column 3"] * (name == "names above")
+    path.write_text("\r\n".join([*lines, ""]), encoding="utf-8")
+    plain.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    columns = {"position": "column 2", "hand_force": "column 3"}
+    log = zw.read_log(path, columns=columns, units={"position": "mm", "hand_force": "N"})
+    assert (log.samples, log.runs, log.sample_period) == (600, 1, 1e-3)
+    for one, other in zip(log.blocks(), zw.read_log(plain).blocks(), strict=True):
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.hand_force, other.hand_force)
+
+
+SAMPLES = [{"time_s": float(t), "state": {"position_mm": float(x)}, "force_N": float(f)} for t, x, f in ROWS]
+WHOLES = {
+    "alone": (SAMPLES, None),
+    "beside settings": ({"mass": 1.2, "motor": "a", "entries": SAMPLES}, '"mass", "motor" left out'),
+    "deeper": (
+        {"log": {"rows": SAMPLES, "marks": [{"a": 1}, {"a": 2}]}},
+        '"log.rows" is read; "log.marks" left out',
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WHOLES)
+@pytest.mark.parametrize("indent", [None, 2])
+def test_a_list_of_samples_in_json(name, indent, tmp_path):
+    """In one line or in many; what else stands there is told."""
+    path, plain, (whole, left) = tmp_path / "log.json", tmp_path / "plain.csv", WHOLES[name]
+    path.write_text(json.dumps(whole, indent=indent), encoding="utf-8")
+    plain.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    log, right = zw.read_log(path), zw.read_log(plain)
+    for one, other in zip(log.blocks(), right.blocks(), strict=True):
+        assert all(map(np.array_equal, one[1:4], other[1:4]))
+    said = [finding.text for finding in log.findings if finding.kind == "left out"]
+    assert len(said) == (left is not None)
+    assert all(text.endswith(left) for text in said)
+    path.write_text(json.dumps(whole, indent=indent)[:-9], encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r"begins as JSON and is none: .* copied whole"):
+        zw.read_log(path)
+
+
 STAMPS = [
     ("sec", "nanosec", 1),
     ("header.stamp.sec", "header.stamp.nanosec", 1),
@@ -138,23 +214,95 @@ def test_what_is_more_than_a_second_is_no_rest_of_one(tmp_path):
         zw.read_log(path)
 
 
-def test_a_long_table_is_refused_with_what_it_is(tmp_path):
-    path = tmp_path / "long.csv"
-    lines = [f"{t},/arm/position,{x}\n{t},/arm/force,{f}\n" for t, x, f in ROWS]
-    path.write_text("timestamp,topic,value\n" + "".join(lines), encoding="utf-8")
-    with pytest.raises(zw.InputError, match=r'column "value" holds 2 quantities, .*columns="topic"'):
-        zw.read_log(path)
-    path.write_text("timestamp,name,value\n" + "".join(lines[:1] * 9).replace("force", "position"))
-    assert list(text_table(path).units) == ["timestamp", "name", "value"]  # one alone is a table
+LONG = {
+    "in turn": ("time_s,topic,value", ["{t},/arm/position,{x}", "{t},/arm/force,{f}"]),
+    "a little later": ("time_s;name;value", ["{t};/arm/position;{x}", "{t}09;/arm/force;{f}"]),
+    "with others, in words too": (
+        "time_s,key,value,seq",
+        ["{t},/mode,auto,1", "{t},/arm/position,{x},2", "{t},/arm/force,{f},3", "{t},/arm/battery,12,4"],
+    ),
+    "in two columns": ("time_s,topic,field,value,seq", ["{t},/arm,position,{x},7", "{t},/arm,force,{f},7"]),
+    "of numbers": ("time_s,channel,value", ["{t},1,{x}", "{t},2,{f}"]),
+    "in columns": ("time_s,/arm/position,/arm/force", ["{t},{x},", "{t}04,,{f}"]),
+}
 
 
-def test_two_topics_in_turn_are_refused_with_what_to_do(tmp_path):
+@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("one_after_the_other", [False, True])
+def test_topics_in_rows_of_their_own_are_columns(name, one_after_the_other, tmp_path):
+    """A row for each number, in turn or topic by topic, is the log of a table; what is left out is told."""
+    path, plain, (head, lines) = tmp_path / "long.csv", tmp_path / "plain.csv", LONG[name]
+    plain.write_text(NAMES + "\n" + rows(), encoding="utf-8")
+    said = [[line.format(t=t, x=x, f=f) + "\n" for line in lines] for t, x, f in ROWS]
+    told = zip(*said, strict=True) if one_after_the_other else said
+    path.write_text(head + "\n" + "".join(map("".join, told)), encoding="utf-8")
+    topics = {"in two columns": ("/arm.position", "/arm.force"), "of numbers": ("1", "2")}
+    position, force = topics.get(name, ("/arm/position", "/arm/force"))
+    given = {
+        "columns": {"position": position, "hand_force": force},
+        "units": {"position": "mm", "hand_force": "N"},
+    }
+    log, right = zw.read_log(path, **given), zw.read_log(plain)
+    assert log.sample_period == right.sample_period
+    for one, other in zip(log.blocks(), right.blocks(), strict=True):
+        assert np.array_equal(one.position, other.position)
+        assert np.array_equal(one.hand_force, other.hand_force)
+    left = {"with others, in words too": [1200]}.get(name, [])
+    assert [f.samples for f in log.findings if f.kind == "topics left out"] == left
+    assert [f.samples for f in log.findings if f.kind == "rows in turn"] == [0]
+
+
+def test_numbers_of_a_topic_that_no_sample_has_are_counted(tmp_path):
+    path = tmp_path / "log.csv"
+    lines = [f"{t},{x},\n" + f"{t}01,,{f}\n" * (k % 100 > 0) for k, (t, x, f) in enumerate(ROWS)]
+    path.write_text(
+        NAMES + "\n" + "".join(lines) + "".join(f"9.{k},,1\n" for k in range(7)), encoding="utf-8"
+    )
+    log = zw.read_log(path)
+    assert (log.samples, log.runs) == (594, 6)
+    assert [f.samples for f in log.findings if f.kind == "rows in turn"] == [7]
+
+
+def test_topics_between_each_other_are_refused_with_the_rule(tmp_path):
+    """Half a period is the difference between a delay and none."""
     path = tmp_path / "log.csv"
     lines = [f"{t},{x},\n{t}5,,{f}\n" for t, x, f in ROWS]
     path.write_text(NAMES + "\n" + "".join(lines), encoding="utf-8")
-    with pytest.raises(zw.InputError, match=r'in all of "time_s", "position_mm", "force_N"; .*ffill'):
+    with pytest.raises(
+        zw.InputError, match=r'"force_N" stands in other rows, 0.5 periods .* up to 0.1 is read'
+    ):
         zw.read_log(path)
     assert zw.read_log(path, columns={"hand_force": None}).samples == 600
+    path.write_text(NAMES + "\n" + 2 * "".join(f"{t},{x},\n{t},,{f}\n" for t, x, f in ROWS), encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r'time starts again in "position_mm".* cut the file'):
+        zw.read_log(path)
+    path.write_text("position_mm,force_N\n" + "".join(f"{x},\n,{f}\n" for _, x, f in ROWS), encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r"fewer than two rows .* by a time"):
+        zw.read_log(path, sample_rate=1000)
+
+
+def test_one_topic_alone_is_a_table_and_one_in_words_is_refused(tmp_path):
+    path = tmp_path / "long.csv"
+    lines = [f"{t},position,{x}\n" for t, x, _ in ROWS]
+    path.write_text("time_s,name,value\n" + "".join(lines), encoding="utf-8")
+    assert list(text_table(path).units) == ["time_s", "name", "value"]
+    path.write_text("time_s,name,value\n" + "".join(lines) + "0.6,mode,auto\n", encoding="utf-8")
+    assert list(text_table(path).units) == ["position", "mode", "time_s"]
+    with pytest.raises(zw.InputError, match='"mode" holds text'):
+        zw.read_log(path, columns={"position": "mode"}, units={"position": "mm"})
+
+
+def test_logs_of_one_table_have_one_clock(tmp_path):
+    """Also where they are dates, and a topic begins later."""
+    path = tmp_path / "long.csv"
+    lines = [
+        f"{1764300000 + k / 1000:.3f},{topic},{x}\n" for k, (_, x, _) in enumerate(ROWS) for topic in "qr"
+    ]
+    path.write_text("time_s,name,value\n" + "".join(lines[:600:2] + lines[600:]), encoding="utf-8")
+    with opened(path) as table:
+        logs = [log_of(table, columns={"position": q}, units={"position": "mm"}) for q in "qr"]
+    starts = [next(log.blocks()).time[0] for log in logs]
+    assert starts == [0.0, pytest.approx(0.3, abs=1e-6)]
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1, "s"), (1e3, "ms"), (1e6, "us"), (1e9, "ns")])

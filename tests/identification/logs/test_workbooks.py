@@ -75,6 +75,10 @@ TABLES: dict[str, list[Sequence[object]]] = {
         *HEAD,
         *[((START + timedelta(seconds=t)).time(), f, x) for t, f, x in ROWS],
     ],
+    "a row for each number": [
+        (HEAD[0][0], "Channel", "Value"),
+        *[row for t, *both in ROWS for row in zip((t, t), HEAD[0][1:], both, strict=True)],
+    ],
     "empty rows, an empty column": [(None, *HEAD[0]), *[row for each in ROWS for row in ((None, *each), ())]],
 }
 

@@ -27,7 +27,7 @@ from ..document.refusal import Invalid, spend
 from ..exact.enclosed import Enclosed, dot, known, quotient
 from ..exact.positivity import POSITIVITY, require_nonnegative
 from ..exact.roots import decay_in_powers, inside_unit_circle
-from .linear import cosine_sums
+from .linear import cosine_sums, require_coprime
 from .loop import LOOP, Loop, in_whole_numbers, loop_of
 
 TRANSMISSION = Record(
@@ -109,6 +109,7 @@ def elastic_violation(told: Read) -> str:
     p, proof = _loop(told), told.proof
     if proof.kind == "criterion":
         return _violated(p, told.transmission, proof.cosine)
+    require_coprime(p)
     held = _held(p, told.transmission)
     if proof.kind == "unstable":
         if held is not False:

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from zwidth.cli.options import (
     IN_FULL,
     LAW,
     PARAMETERS,
     SHEET,
+    as_typed,
     device_parameters,
     given,
     output,
     overrides,
-    sheet_option,
+    reading_of,
 )
 from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
     from zwidth.model.device import Device
     from zwidth.model.environment import Environment
     from zwidth.model.pairs import Pair
-
-_READING = {"--column": "columns", "--unit": "units", "--scale": "scale"}
-"""Options that may come several times, and the arguments of `diagnose`."""
 
 _DEVICE = [p.key for p in device_parameters()]
 _OF_AN_ARM = ("position", "commanded_force", "actuator_force")
@@ -102,13 +99,7 @@ def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
     from zwidth.data.diagnosis import diagnose, diagnose_pair
     from zwidth.data.diagnosis.pairs.recording import holds_two_arms
 
-    reading: dict[str, Any] = {}
-    for option, name in _READING.items():
-        pairs = [_pair(option, typed) for typed in getattr(arguments, name) or ()]
-        if len(dict(pairs)) < len(pairs):
-            raise InputError(f"{option} names a quantity twice; which one is meant?")
-        if pairs:
-            reading[name] = {k: None if name == "columns" and v == "none" else v for k, v in pairs}
+    reading = reading_of(arguments, _QUANTITIES)
     if arguments.log_rate is not None:
         reading["sample_rate"] = arguments.log_rate
     if arguments.sheet is not None:
@@ -121,7 +112,7 @@ def _diagnosed(arguments: argparse.Namespace) -> Diagnosis | PairDiagnosis:
             reading["resolution"] = device.resolution
         return diagnose(Path(arguments.log), device, law=law, **reading)
     except InputError as error:
-        raise InputError(_as_typed(str(error))) from None
+        raise InputError(as_typed(str(error).replace("sample_rate or sample_period", "--log-rate"))) from None
 
 
 def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:
@@ -138,16 +129,6 @@ def _pair_of_arms(arguments: argparse.Namespace) -> Pair | None:
     return load_pair(arguments.sources, {"stiffness": "1"})
 
 
-_PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(\w+|…))\}")
-_OPTION = {name: option for option, name in _READING.items()}
-
-
-def _as_typed(text: str) -> str:
-    """What to try, in a message, as it is typed here."""
-    text = sheet_option(text.replace("sample_rate or sample_period", "--log-rate"))
-    return _PYTHON.sub(lambda found: f"{_OPTION[found[1]]} {found[2]}={found[3] or found[4]}", text)
-
-
 def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | None]:
     """The device, and the law that was programmed, as far as they are known."""
     words = overrides(arguments)
@@ -161,13 +142,3 @@ def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | N
         loop = asked(arguments).loop
         return loop.device, loop.environment
     return specified_device(tables, words), None
-
-
-def _pair(option: str, typed: str) -> tuple[str, str]:
-    key, sign, value = typed.partition("=")
-    name = key.strip().replace("-", "_")
-    if not sign or not value:
-        raise InputError(f"{option} is written {option} position=VALUE, got {quoted(typed)}")
-    if name not in _QUANTITIES:
-        raise InputError(f"{option}: there is no quantity {quoted(key)}; there are {', '.join(_QUANTITIES)}")
-    return name, value

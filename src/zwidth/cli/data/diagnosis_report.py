@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from rich.padding import Padding
 from rich.text import Text
 
-from zwidth.cli.options import overrides
+from zwidth.cli.options import as_typed, overrides
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section, small_print
+from zwidth.data.logs.table import LEFT_OUT
 from zwidth.passivity.scope import TOLD
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
@@ -39,10 +40,11 @@ def print_diagnosis(found: Diagnosis | PairDiagnosis, arguments: argparse.Namesp
             section(out, "what to change", items(found.next_steps))
         section(out, "what to record", items(found.record))
         if not arguments.in_full:
+            section(out, "the file", items(as_typed(text) for text in found.findings if LEFT_OUT in text))
             more_with_all(out, "every number, the other causes, what is supposed")
             return
         out.print(below(grid(found.rows())))
-        section(out, "the file", items(found.findings))
+        section(out, "the file", items(map(as_typed, found.findings)))
         out.print(small_print(*_supposed(found)))
 
 

@@ -18,7 +18,7 @@ from zwidth.cli.options import (
     environment_parameters,
     given,
     output,
-    pairs_of,
+    reading_of,
 )
 from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
@@ -125,13 +125,7 @@ def _further_logs(arguments: argparse.Namespace) -> list[str]:
 
 def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
     """How to read the log, as `read_log` takes it."""
-    reading: dict[str, Any] = {}
-    for option, name in (("--column", "columns"), ("--unit", "units"), ("--scale", "scale")):
-        pairs: dict[str, Any] = pairs_of(option, getattr(arguments, name), QUANTITIES)
-        if name == "columns":
-            pairs = {key: None if value == "none" else value for key, value in pairs.items()}
-        if pairs:
-            reading[name] = pairs
+    reading = reading_of(arguments, QUANTITIES)
     for name in ("sample_rate", "sample_period", "resolution", "counts_per_turn", "sheet", "motion"):
         if getattr(arguments, name) is not None:
             reading[name] = getattr(arguments, name)

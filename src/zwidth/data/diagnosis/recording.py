@@ -22,7 +22,7 @@ from zwidth.data.logs import Log
 from zwidth.data.logs.columns import is_target, role_of_force
 from zwidth.data.logs.read import log_of, opened
 from zwidth.data.logs.survey import Still
-from zwidth.data.logs.table import Block, Motion, Table, listed, whole_runs
+from zwidth.data.logs.table import LEFT_OUT, Block, Motion, Table, listed, whole_runs
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
@@ -243,6 +243,11 @@ def _recording(
             'of a vibration comes from; read it with columns={"actuator_force": …}'
         )
     longest = _longest(log)
+    if log.runs > 1:
+        looked = f"run {longest.run + 1} of {log.runs} is looked at, the longest: {LEFT_OUT}"
+        if any(finding.kind == "episodes" for finding in log.findings):
+            looked += '; sheet="0" and so on chooses an episode'
+        supposed = (looked, *supposed)
     asked = None if commanded is None else _longest(commanded).actuator_force
     given = None if applied is None else _longest(applied).actuator_force
     if asked is not None and given is not None and _against(asked, given):
@@ -258,18 +263,18 @@ def _recording(
         commanded=asked,
         applied=given,
         findings=(*supposed, *(finding.text for finding in log.findings if finding.kind != "no hand force")),
-        target=None if target is None else _at(longest.time, target),
+        target=None if target is None else _at(longest, log.runs, target),
     )
 
 
-def _at(times: Array, target: Log | float) -> Array:
-    """[m; rad] the target at these times: rows that one column lacks are not missing in another.  Where it
-    stands does not count."""
+def _at(run: Block, runs: int, target: Log | float) -> Array:
+    """[m; rad] the target in a run, of so many, with each of which time may start again: rows that one column
+    lacks are not missing in another.  Where it stands does not count."""
     if not isinstance(target, Log):
-        return np.full_like(times, target)
-    blocks = list(target.blocks())
+        return np.full_like(run.time, target)
+    blocks = [block for block in target.blocks() if target.runs != runs or block.run == run.run]
     known = np.concatenate([block.time for block in blocks])
-    return np.asarray(np.interp(times, known, np.concatenate([block.position for block in blocks])))
+    return np.asarray(np.interp(run.time, known, np.concatenate([block.position for block in blocks])))
 
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"

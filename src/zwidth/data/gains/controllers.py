@@ -18,6 +18,7 @@ fzi-forschungszentrum-informatik/cartesian_controllers.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -58,6 +59,18 @@ _OF_RATIOS = (
 _READ = (
     "gains or pid with p, i, d of each joint, k_gains with d_gains, joints with kp and damping_ratio; at the "
     "end stiffness with translation and rotation, task with k_pos_x … k_rot_z"
+)
+
+_INTERFACES = ("command_interfaces", "command_interface", "interface_name")
+"""What a controller of ROS 2 commands: of a trajectory, a PID, what is passed on."""
+
+_MOVES = re.compile(r"(?!.*(effort|torque)).*(position|velocity|acceleration|pos_vel)", re.IGNORECASE)
+"""Of commands that a drive follows by a loop of its own."""
+
+_OF_DRIVE = (
+    "a hand there feels the drive's own loop, of which this file has no gain. Give its spring and damper, "
+    "from its maker, its impedance mode or a test, as {arm: {ros__parameters: {gains: {JOINT: {p: …, d: "
+    "…}}}}} in N·m/rad and N·m·s/rad, and its --rate; why an arm shakes, zwidth diagnose RECORDING tells"
 )
 
 
@@ -199,7 +212,7 @@ def read_controllers(path: str | Path) -> Controllers:
     joints, cartesian = list[JointLaw](), list[CartesianGains]()
     seen, others = list[tuple[str, ...]](), list[str]()
     for inner in table.below():
-        if _fits(inner):
+        if _fits(inner) and (_admittance(inner) or not _MOVES.match(_commanded(inner))):
             try:
                 joints += _joints(inner)
                 cartesian += _cartesian(inner)
@@ -209,9 +222,12 @@ def read_controllers(path: str | Path) -> Controllers:
     if not joints and not cartesian:
         for inner in table.below():
             refuse_observers(inner)
+        moved = [name for name, _, what in _controllers(table) if _MOVES.match(what)]
         raise InputError(
             others[0]
             if others
+            else f"{table.label}: positions or speeds are commanded by {', '.join(moved)}: {_OF_DRIVE}"
+            if moved
             else f"{table.label}: no gains of a controller that are known; read are {_READ}. Write others in "
             "one of these forms, {arm: {ros__parameters: {gains: {JOINT: {p: …, d: …}}}}}, or ask zwidth "
             "workspace ARM.urdf --pose --stiffness … --rotational-stiffness …"
@@ -223,9 +239,10 @@ def read_controllers(path: str | Path) -> Controllers:
         others += [
             f"{one.source}: zwidth workspace ARM.urdf --pose --wall FILE decides it" for one in cartesian
         ]
-    for name, keys in _controllers(table):
+    for name, keys, what in _controllers(table):
         if not any(own[: len(keys)] == keys for own in seen):
-            others.append(f"{name}: it has no gains that are read")
+            drive = f"it commands {quoted(what)} of a drive, whose own loop is not in the file"
+            others.append(f"{name}: {drive if _MOVES.match(what) else 'it has no gains that are read'}")
     notes += [f"left out: {text}" for text in others]
     found = Controllers(tuple(joints), tuple(cartesian), None, tuple(notes))
     for inner in table.below():
@@ -238,16 +255,25 @@ def is_of_controllers(table: GainTable) -> bool:
     return next(_controllers(table), None) is not None or any(_fits(inner) for inner in table.below())
 
 
-def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """By what they are called, controllers of ROS 2, and of ROS 1, where a `type` says what each is."""
-    for inner in table.below():
-        kind = inner.values.get("type")
-        if inner.keys[-1:] == ("controller_manager",) or "ros__parameters" in inner.keys:
+def _controllers(table: GainTable) -> Iterator[tuple[str, tuple[str, ...], str]]:
+    """The controllers by name, of ROS 1 by their `type`, of ROS 2 that of the manager; what each commands."""
+    every = [*table.below()]
+    types = {inner.keys[-1]: _commanded(inner) for inner in every if inner.keys and "type" in inner}
+    for inner in every:
+        kind, name = inner.values.get("type"), "/".join(inner.keys)
+        if name.endswith("controller_manager") or "ros__parameters" in inner.keys:
             continue
         if "ros__parameters" in inner:
-            yield "/".join(inner.keys), inner.keys
+            own = _commanded(inner.table("ros__parameters")) if _inner(inner, "ros__parameters") else ""
+            yield name, inner.keys, own or types.get(name.rsplit("/", 1)[-1], "")
         elif isinstance(kind, str) and "/" in kind:
-            yield f"{'/'.join(inner.keys)} ({kind})", inner.keys
+            yield f"{name} ({kind})", inner.keys, kind
+
+
+def _commanded(table: GainTable) -> str:
+    """What a controller commands, as its interfaces say it, else its type; nothing where neither is there."""
+    given = next((table.values[key] for key in (*_INTERFACES, "type") if key in table), "")
+    return ", ".join(map(str, given)) if isinstance(given, list) else str(given)
 
 
 def _inner(table: GainTable, key: str) -> Mapping[str, Any]:
@@ -311,11 +337,12 @@ def _joints(table: GainTable) -> Iterator[JointLaw]:
 
 
 def _commands_efforts(table: GainTable, key: str) -> None:
-    """Elsewhere gains make a speed or a position of an error, or an effort of the error of a speed."""
-    interfaces, kind = table.values.get("command_interfaces"), str(table.values.get("type", "effort"))
-    commands = ", ".join(map(str, interfaces)) if isinstance(interfaces, list) else kind
-    if "effort" not in commands or kind.endswith("VelocityController"):
-        where = table.where("command_interfaces" if isinstance(interfaces, list) else key)
+    """Elsewhere gains make something else of an error, or an effort of the error of a speed."""
+    commands, of = _commanded(table) or "effort", table.values.get("reference_and_state_interfaces")
+    if isinstance(of, list) and of and of[0] != "position":
+        commands += " by " + ", ".join(map(str, of))
+    if "effort" not in commands or " by " in commands or commands.endswith("VelocityController"):
+        where = table.where(next((name for name in _INTERFACES if name in table), key))
         raise _OtherLaw(
             f"{where}: gains act on {quoted(commands)}; they are a spring and a damper where the command is "
             "an effort made of positions"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from zwidth.data.gains.arms import ArmGains
@@ -257,6 +258,11 @@ def _motor(table: GainTable, joint: int) -> str:
 # on both sides, q' the other arm's position: Kd is of the speed of one arm against the other.  The factor 0.1
 # is in the code (ComputeFriction), although the comment beside the numbers says tanh(k q̇).  Source: the file
 # src/controller/control.cpp of that repository, function bilateral_step.
+#
+# Bilateral, of a fork over a network (IS0moto/openarm_teleop, the same file: leader_step, unilateral_step):
+#
+#     leader    τ = K (q' − q) − Kd q̇ + gravity + 0.3 (Fc tanh(0.1 k q̇) + Fv q̇ + Fo)
+#     follower  τ = Kp (q' − q) + Kd (q̇' − q̇) + gravity
 
 OPENARM = "openarm"
 
@@ -279,6 +285,17 @@ _OPENARM_NOTES = (
     "the threads of both arms are not in step, so that readings are 1 to 4.3 ms old, now more and now less: "
     "a constant age is decided",
 )
+_BILATERAL_NOTES = (
+    "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of its own "
+    "speed; the follower's Kd is of its speed against the leader's, which is its v_des "
+    "(IS0moto/openarm_teleop, leader_step and unilateral_step)",
+    *_OPENARM_NOTES[1:4:2],
+    "of that compensation the leader has 0.3, and the follower none",
+    "both arms are taken as computed once in a sample period, the follower too, which in the fork has a loop "
+    "in its drive: with that it is another pair, which is not decided here",
+    "the fork runs at 500 Hz, and its leader.yaml tells of 3 ms there and back over a wire: give --rate 500 "
+    "and your --link-delay; what is not given is taken from openarm_teleop",
+)
 
 
 def fits_openarm(table: GainTable) -> bool:
@@ -295,21 +312,21 @@ def read_openarm(tables: Sequence[GainTable]) -> ArmGains:
                     raise InputError(f"{table.where(key)}: the {side}'s gains are given twice")
                 found[side] = _gains(table.table(key))
     bilateral = [table.table("Bilateral") for table in tables if "Bilateral" in table]
-    notes = list(_OPENARM_NOTES)
-    if bilateral:
-        found["leader"] = _on_the_host(bilateral[0], found.get("leader"))
-        notes += [
-            "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of "
-            "its own speed; the follower's are taken as in openarm_teleop, v_des the leader's speed",
-            "both arms are taken as computed once in a sample period, the follower too, which in the fork "
-            "has a loop in its drive: with that it is another pair, which is not decided here",
-        ]
+    notes = list(_BILATERAL_NOTES if bilateral else _OPENARM_NOTES)
     for side, other in (("leader", "follower"), ("follower", "leader")):
-        if side not in found:
+        if side not in found and other in found and not (bilateral and side == "leader"):
             found[side] = found[other]
             notes.append(
-                f"no file gives the {side}'s gains: taken as the {other}'s; give both files where they differ"
+                f"no file gives the {side}'s gains: taken as those of {_SIDES[other]}; give both files where "
+                "they differ"
             )
+    if bilateral:
+        if "follower" not in found:
+            raise InputError(
+                f"{bilateral[0].label}: the leader's law alone; give the file with FollowerArmParam, too"
+            )
+        found["leader"] = _on_the_host(bilateral[0], found.get("leader"))
+        found["follower"] = [replace(gains, compensation=NONE) for gains in found["follower"]]
     leader, follower = found["leader"], found["follower"]
     if len(leader) != len(follower):
         raise InputError(
@@ -370,7 +387,7 @@ def _compensation_of_openarm(table: GainTable, count: int) -> list[FrictionCompe
 
 
 def _on_the_host(table: GainTable, stock: list[Gains] | None) -> list[Gains]:
-    """The leader of a fork over two computers (IS0moto/openarm_teleop)."""
+    """The leader of the fork over two computers, `stock` what its LeaderArmParam says."""
     stiffness, local = table.springs("Kp", "Kd")
     if "Kf" in table and any(table.numbers("Kf", "1", len(stiffness))):
         raise InputError(
@@ -379,7 +396,7 @@ def _on_the_host(table: GainTable, stock: list[Gains] | None) -> list[Gains]:
         )
     laws: list[FrictionCompensation] = [NONE] * len(stiffness)
     if stock is not None and len(stock) == len(stiffness):
-        laws = [gains.compensation for gains in stock]
+        laws = [gains.compensation.scaled(Fraction(3, 10)) for gains in stock]
     return [
         Gains(k, local_damping=d, compensation=law, source=f"{table.label}, Kp[{n}]")
         for n, (k, d, law) in enumerate(zip(stiffness, local, laws, strict=True))

@@ -15,6 +15,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
+from zwidth.model.specification.read import refuse_settings
 from zwidth.model.specification.table import plain, quoted
 from zwidth.quantity.units import parse_number
 
@@ -96,6 +97,7 @@ def read_table(path: str | Path) -> GainTable:
     name = quoted(str(path))
     path = Path(path)
     text = _text(path, name)
+    refuse_settings(text, name)
     suffix = path.suffix.lower()
     read = {".json": _json, ".toml": _toml}.get(suffix, _yaml)
     try:

@@ -81,16 +81,6 @@ def read_gains(
         raise InputError(f"--supply-voltage belongs to gains of {FEETECH}, these are of {name}; leave it out")
     if both and name in (OPENARM, I2RT):
         raise InputError("--both is for gains of a follower alone; these are of both arms: leave it out")
-    return _read(name, tables, bilateral_kp, supply_voltage, both)
-
-
-def _read(
-    name: str,
-    tables: list[GainTable],
-    bilateral_kp: RealLike | None,
-    supply_voltage: RealLike | None,
-    both: bool,
-) -> ArmGains:
     if name == I2RT:
         share = parse_number(BILATERAL_KP if bilateral_kp is None else bilateral_kp, "1", "bilateral_kp")
         if share < 0:

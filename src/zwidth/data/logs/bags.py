@@ -26,7 +26,7 @@ import numpy as np
 import pyarrow as pa
 
 from zwidth.data.logs.served import INSTALL, MAGIC, ZSTD, Mcap
-from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, readable
+from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, nearest, readable
 from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
 
@@ -249,7 +249,7 @@ def _read(
             whole[rows[name]] = values[name]
             found[name] = whole[taken]
         else:
-            found[name] = _nearest(found[TIME], stamps[topic][rows[name]], values[name])
+            found[name] = nearest(found[TIME], stamps[topic][rows[name]], values[name])
             text = (
                 f'"{name}" is of another topic than the position; each sample has the value nearest in time'
             )
@@ -305,19 +305,6 @@ def _followed(message: Any, steps: _Steps) -> Any:
             return float("nan")
         value = value[place]
     return value
-
-
-def _nearest(wanted: NDArray[Any], stamps: NDArray[Any], values: NDArray[Any]) -> NDArray[Any]:
-    """The value nearest in time to each wanted stamp; NaN where none is within half a period."""
-    if stamps.size == 0 or wanted.size < 2:
-        return np.full(wanted.size, np.nan)
-    order = np.argsort(stamps, kind="stable")
-    stamps, values = stamps[order], values[order]
-    right = np.clip(np.searchsorted(stamps, wanted), 0, stamps.size - 1)
-    left = np.maximum(right - 1, 0)
-    near = np.where(np.abs(stamps[left] - wanted) <= np.abs(stamps[right] - wanted), left, right)
-    reach = 0.5 * float(np.median(np.diff(np.sort(wanted))))
-    return np.where(np.abs(stamps[near] - wanted) <= 1.02 * reach, values[near], np.nan)
 
 
 # The pieces of a bag that are compressed, each looked at before the library expands it whole.

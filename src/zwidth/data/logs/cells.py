@@ -18,7 +18,7 @@ from typing import IO
 import numpy as np
 import pyarrow as pa
 
-from zwidth.data.logs.records import Records, names_of_records
+from zwidth.data.logs.records import Records, names_of_records, records_in_json, sign_of_monitor
 from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded
 
@@ -161,29 +161,34 @@ SNIFFED = 2**16
 """[bytes] at the start of a file by which it is judged."""
 
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
+_JSON = re.compile(r"\s*(\{\s*\"|\[\s*\{)")
 _SIGNS = (("\u2212", "-"), ("\u00a0", " "), ("\u202f", " "), ("\ufeff", ""))
 """Signs that mean the same as those of ASCII: a minus, spaces, a mark at the start of a file."""
 
 
 def opened_text(path: Path) -> IO[bytes] | Bounded | Records:
-    """The bytes of a file; UTF-16, and lines that end in a carriage return alone, are turned over whole, and
-    lines that name each number are rows of a table."""
+    """The bytes of a file: UTF-16, lines that end in a carriage return, and JSON are turned over whole, and
+    lines that name each number, or begin with the time of a monitor, are rows of a table."""
     with _opened(path) as file:
         start = file.read(SNIFFED)
-    if names := names_of_records(_decoded(start)):
-        return Records(_opened(path), names)
+    text = _decoded(start)
+    names, sign = names_of_records(text), sign_of_monitor(text)
+    if names or sign:
+        return Records(_opened(path), names, "" if names else sign)
     encoding = _wide(start)
     bare_returns = b"\r" in start and b"\n" not in start
-    if encoding is None and not bare_returns:
+    if encoding is None and not bare_returns and not _JSON.match(text):
         return _opened(path)
     with _opened(path) as file:
         whole = file.read(LARGEST_CHUNK + 1)
     if len(whole) > LARGEST_CHUNK:
-        raise InputError(f"{path} is text of an old kind and large; save it as UTF-8 with ordinary line ends")
+        raise InputError(f"{path} is JSON, or text of an old kind, and large; save it as UTF-8 in lines")
     try:
         text = whole.decode(encoding) if encoding else _decoded(whole)
     except UnicodeDecodeError:
         text = whole.decode(encoding or "latin-1", "ignore")  # cut off in the middle of a letter
+    if _JSON.match(text) and (records := records_in_json(text, str(path))):
+        return records
     return BytesIO(text.replace("\r\n", "\n").replace("\r", "\n").encode())
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
@@ -36,7 +36,7 @@ _NUMBER_AND_UNIT = re.compile(r"[+-]?\d[\d.,]*\s*[^\W\d_]+\Z")
 Sample = tuple[tuple[str, ...], ...]
 """The first rows of numbers, split."""
 
-Kind = Literal["float", "int", "date", "calendar", "clock", "text"]
+Kind = Literal["float", "int", "date", "calendar", "clock", "text", "words"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +56,10 @@ class Layout:
     sample: Sample
     comments: tuple[str, ...]
     """Lines before the numbers that are comments."""
+    counted: tuple[float, float] | None = None
+    """[s] Where the first column counts samples: the time of number 0, and from one to the next."""
+    words: tuple[str, ...] = ()
+    """Columns that are read as they stand."""
 
     def kind(self, column: str) -> Kind:
         """What the first rows of a column hold; "int" is too long for a float, a "date" in ISO 8601."""
@@ -63,7 +67,7 @@ class Layout:
 
     @cached_property
     def _kinds(self) -> list[Kind]:
-        return [_kind(self.fields(name)) for name in self.names]
+        return ["words" if name in self.words else _kind(self.fields(name)) for name in self.names]
 
     def fields(self, column: str) -> list[str]:
         return [row[self.names.index(column)] for row in self.sample]
@@ -180,6 +184,16 @@ def _numeric(fields: list[str]) -> bool:
     return values > 0 and 2 * (values + sum(map(is_nothing, fields))) > len(fields)
 
 
+_LABELS = "topic name signal channel variable series key field metric label parameter"
+
+
+def columns_of_topics(names: Iterable[str]) -> tuple[str, ...]:
+    """Where each row holds one number, the columns that say which, and last that of the number; else none."""
+    bare = {name.strip("_ ").lower(): name for name in names}
+    labels = [bare[word] for word in _LABELS.split() if word in bare]
+    return (*labels, bare["value"]) if labels and "value" in bare else ()
+
+
 class _Split(NamedTuple):
     """A text whose lines are split: how many columns of numbers that makes (0: none), from which line on
     (−1: none), all its rows, and the first ones of numbers."""
@@ -195,7 +209,8 @@ def _split_at(lines: list[str], rows: list[tuple[int, str]], delimiter: str) -> 
     """Of the lines those that are rows, each with its number, split at a delimiter."""
     found = [split(line, delimiter) for _, line in rows]
     none = _Split(delimiter, 0, -1, found)
-    numeric = [_numeric(fields) for fields in found]
+    long = bool(columns_of_topics(found[0]))
+    numeric = [_numeric(fields) or (long and k > 0) for k, fields in enumerate(found)]
     sizes = [len(fields) for fields, good in zip(found, numeric, strict=True) if good]
     if not sizes:
         return none
@@ -245,11 +260,14 @@ def laid_out(
     comments = tuple(line.strip() for line in above if is_comment(line))
     plain = [line for line in above if not is_comment(line)]
     filled = [any(row[k] for row in sample) for k in range(columns)]
+    counted = _counted(plain, delimiter)
     header, names, units_line = _header(plain, comments, delimiter, filled)
+    names = ["time", *names[1:]] if counted else names
     if not header and delimiter == ",":
         _refuse_two_commas(plain, columns, source)
     names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
     units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
+    units |= {"time": "s"} if counted else {}
     fields = [field for row in sample for field in row]
     commas = delimiter != "," and any("," in field for field in fields)
     return Layout(
@@ -261,7 +279,19 @@ def laid_out(
         header=header if header in plain else "",
         sample=sample,
         comments=comments,
+        counted=counted,
     )
+
+
+def _counted(plain: list[str], delimiter: str) -> tuple[float, float] | None:
+    """As of `Layout`: oscilloscopes of Rigol write both behind the names and the units, which are left."""
+    names, below = ([split(line, delimiter) for line in plain[-2:]] + [[], []])[:2]
+    said = dict(zip(names, below, strict=False))
+    if not {"Start", "Increment"} <= said.keys() or not are_plain((said["Start"], said["Increment"])):
+        return None
+    known = [unit if is_unit(unit) else "" for unit in below[: names.index("Start")]]
+    plain[-2:] = [delimiter.join(names[: len(known)]), *[delimiter.join(known)] * any(known)]
+    return float(said["Start"]), float(said["Increment"])
 
 
 def _refuse_two_commas(plain: list[str], columns: int, source: str) -> None:

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.logs.columns import Meaning, meaning_of, recognise
+from zwidth.data.logs.columns import recognise
+from zwidth.data.logs.meaning import Meaning, meaning_of
 from zwidth.data.logs.rows import Recording
 from zwidth.data.logs.runs import Clock, Cutter, Segment, clock_of
 from zwidth.data.logs.sensors import Grid, Unwrapper
@@ -30,7 +31,7 @@ from zwidth.data.logs.survey import (
     position_findings,
     refuse_survey,
 )
-from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, listed
+from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, check_lengths, listed
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import quantity_unit
@@ -249,8 +250,8 @@ def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, 
     if start is None or start.time.size < 2:
         names = meaning.columns.values()
         raise InputError(
-            f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; where "
-            "topics are written in turn, give each row the newest of each, in pandas with table.ffill()"
+            f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; what "
+            "stands in other rows than the position is looked for at most half a period away, by a time"
         )
     clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
     cutter = Cutter(clock, table.source, tally)
@@ -363,10 +364,7 @@ def _vector(name: str, values: Any) -> Values:
 def _table(
     arrays: dict[str, Values], units: Mapping[str, str | None], attributes: Mapping[str, Any]
 ) -> Table:
-    sizes = {name: values.size for name, values in arrays.items()}
-    if len(set(sizes.values())) > 1:
-        said = ", ".join(f"{name} {size}" for name, size in sizes.items())
-        raise InputError(f"every column needs as many samples, got {said}")
+    check_lengths("arrays", {name: values.size for name, values in arrays.items()})
 
     def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
         yield tuple(arrays[name] for name in names)

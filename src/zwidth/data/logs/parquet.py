@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from zwidth.data.logs.table import MOST_COLUMNS, PIECE, Finding, Table, Values
+from zwidth.data.logs.table import LEFT_OUT, MOST_COLUMNS, PIECE, Finding, Table, Values, listed, readable
 from zwidth.errors import InputError
 from zwidth.reading import check_parquet
 
@@ -39,28 +39,38 @@ _Part = tuple[str, int | None, pa.DataType]
 """The field that a column is in, its place in the field's list, and the type that it is read as."""
 
 
-def parquet_table(path: Path) -> Table:
-    schema = pq.read_schema(path)
+def parquet_table(path: Path, episode: str | None = None) -> Table:
+    """Of a file, or of a folder with a LeRobot dataset; of that the episode of this number, or all."""
+    files = dataset_files(path) if path.is_dir() else [path]
+    with readable(str(files[0])):
+        schema = pq.read_schema(files[0])
     again = next((name for name in schema.names if schema.names.count(name) > 1), None)
     if again is not None:
         raise InputError(f'{path} has more than one column "{again}"; give each a name of its own')
-    dataset = _dataset(path)
+    dataset = _dataset(files[0])
     parts: dict[str, _Part] = {}
     units: dict[str, str | None] = {}
     for field in schema:
-        for name, part in _parts(path, field, dataset):
+        for name, part in _parts(files[0], field, dataset):
             parts[name] = part
             units[name] = "ns" if _is_time(part[2]) else _unit(field)
     notes: dict[str, Finding] = {}
     likely: dict[str, str] = {}
     if units.get("timestamp", "") is None and set(units) >= _EPISODES:
         units["timestamp"] = "s"
-        notes = {finding.kind: finding for finding in _of_episodes(path)}
+        notes = {finding.kind: finding for finding in _of_episodes(path, files, episode)}
         likely = {name: _likely(dataset, name) for name, (_, place, _) in parts.items() if place is not None}
+    elif episode is not None or len(files) > 1:
+        told = (
+            f"name one of its files, such as {files[0]}" if path.is_dir() else f'leave sheet="{episode}" out'
+        )
+        raise InputError(f"{path} is no workbook and no LeRobot dataset: {told}")
     return Table(
         source=str(path),
         units=units,
-        read=lambda names: _read(path, [parts[name] for name in names]),
+        read=lambda names: (
+            piece for file in files for piece in _read(file, [parts[name] for name in names], episode)
+        ),
         attributes=json.loads((schema.metadata or {}).get(b"zwidth", b"{}")),
         notes=notes,
         likely=likely,
@@ -120,12 +130,16 @@ def _spelled(text: str | None) -> pa.DataType | None:
     return None
 
 
-def _read(path: Path, parts: list[_Part]) -> Iterator[tuple[Values, ...]]:
-    fields = list(dict.fromkeys(field for field, *_ in parts))
+def _read(path: Path, parts: list[_Part], episode: str | None) -> Iterator[tuple[Values, ...]]:
+    fields = list(dict.fromkeys([field for field, *_ in parts] + ["episode_index"] * (episode is not None)))
     check_parquet(path, set(fields))
     days = [partial(_days, []) if pa.types.is_time(kind) else np.asarray for *_, kind in parts]
     with pq.ParquetFile(path, pre_buffer=False) as file:
+        if missing := [field for field in fields if field not in file.schema_arrow.names]:
+            raise InputError(f"{path} has no column {listed(missing)}, as the first file of its folder has")
         for batch in file.iter_batches(batch_size=PIECE, columns=fields):
+            if episode is not None:
+                batch = batch.filter(pc.equal(batch["episode_index"], int(episode)))
             columns = {field: batch.column(batch.schema.get_field_index(field)) for field in fields}
             yield tuple(
                 of_days(_values(_element(columns[field], k), kind))
@@ -168,14 +182,23 @@ def _values(column: pa.Array, kind: pa.DataType) -> Values:
     return np.asarray(column.to_numpy(zero_copy_only=False))
 
 
-# LeRobot: meta/info.json beside data/chunk-000/….parquet.  Which unit its numbers have depends on the robot
-# and on the version that recorded it (huggingface/lerobot: `use_degrees` of robots/*/config_*.py from v0.3.2
-# to v0.6.1, docs/source/backwardcomp.mdx).
+# LeRobot: meta/info.json beside data/chunk-000/….parquet, one episode in each up to v2.1, many from v3.0 on.
+# Which unit its numbers have depends on the robot and on the version that recorded it (huggingface/lerobot:
+# datasets/utils.py; `use_degrees` of robots/*/config_*.py, v0.3.2 to v0.6.1, docs/source/backwardcomp.mdx).
 
 
 def dataset_files(path: Path) -> list[Path]:
-    """The files of a folder that is a LeRobot dataset; none where it is none."""
-    return sorted(path.glob("data/*/*.parquet")) if (path / "meta" / "info.json").is_file() else []
+    """The files of the one dataset that a folder is, is in, or holds."""
+    infos = (info for depth in ("", "*/", "*/*/", "*/*/*/") for info in path.glob(f"{depth}meta/info.json"))
+    found = sorted(str(info.parent.parent) for info in infos)
+    if len(found) > 1 and str(path) not in found:
+        raise InputError(f"{path} holds {len(found)} LeRobot datasets, {listed(found)}: name one of them")
+    root = Path(found[0]) / "data" if found else path
+    files = sorted([*root.glob("*.parquet"), *root.glob("*/*.parquet")])
+    if not files:
+        what = f"nothing is in {root}" if found else "no rosbag2: there is no metadata.yaml in it"
+        raise InputError(f"{path} is a directory, and {what}; name a file")
+    return files
 
 
 def _dataset(path: Path) -> dict[str, Any]:
@@ -193,23 +216,28 @@ def _dataset(path: Path) -> dict[str, Any]:
 
 
 def _names(dataset: Mapping[str, Any], field: str, size: int) -> list[Any]:
-    """What the places of a list are called, as a list or within a table; else their numbers."""
+    """What the places of a list are called, as a list or inside a list or table; else their numbers."""
     try:
         names = dataset["features"][field]["names"]
-        if isinstance(names, dict):
-            lists = [each for each in names.values() if isinstance(each, list)]
-            names = list(chain(*lists)) if lists else sorted(names, key=lambda name: int(names[name]))
+        values = names.values() if isinstance(names, dict) else names
+        if lists := [each for each in values if isinstance(each, list)]:
+            names = list(chain(*lists))
+        elif isinstance(names, dict):
+            names = sorted(names, key=lambda name: int(names[name]))
         named = len(names) == len(set(names)) == size and all(name.isprintable() for name in names)
     except (KeyError, TypeError, ValueError, AttributeError):
         named = False
     return names if named else list(range(size))
 
 
-def _of_episodes(path: Path) -> Iterator[Finding]:
-    """What stamps of a dataset are, and how many episodes follow each other."""
+def _of_episodes(path: Path, files: list[Path], chosen: str | None) -> Iterator[Finding]:
+    """What the stamps are, and which episodes there are; `files` keeps those with the one that is chosen."""
     names = ["timestamp", "frame_index", "episode_index"]
-    check_parquet(path, set(names))
-    time, frame, episode = (column.to_numpy() for column in pq.read_table(path, columns=names).columns)
+    for file in files:
+        with readable(str(file)):
+            check_parquet(file, set(names))
+    each = [pq.read_table(file, columns=names) for file in files]
+    time, frame, episode = (column.to_numpy() for column in pa.concat_tables(each).columns)
     late = frame > 0
     periods = time[late].astype(float) / frame[late]
     if periods.size and np.ptp(periods) < 1e-4 * abs(periods[0]):
@@ -218,8 +246,18 @@ def _of_episodes(path: Path) -> Iterator[Finding]:
             "taken, and whether one is missing, is not in the file"
         )
         yield Finding(kind="no clock", text=text)
-    if (count := np.unique(episode).size) > 1:
-        yield Finding(kind="episodes", text=f"{count} episodes of a LeRobot dataset, each a run of its own")
+    every = np.unique(episode)
+    said = f"{every.size} episodes of a LeRobot dataset, {every[0]} to {every[-1]}"
+    if chosen is not None:
+        held = [chosen in map(str, pc.unique(one["episode_index"]).to_pylist()) for one in each]
+        if not any(held):
+            raise InputError(f'{path} has no episode "{chosen}": there are {said}')
+        files[:] = [file for file, has in zip(files, held, strict=True) if has]
+    if every.size > 1:
+        text = (
+            f"{said}, each a run of its own" if chosen is None else f"episode {chosen} of {said}: {LEFT_OUT}"
+        )
+        yield Finding(kind="episodes", text=text)
 
 
 _ROBOTS = {

@@ -8,8 +8,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from zwidth.data.logs.columns import QUANTITIES, meaning_of, recognise
+from zwidth.data.logs.columns import QUANTITIES, recognise
 from zwidth.data.logs.log import Log, contents, stated_period
+from zwidth.data.logs.meaning import meaning_of
 from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets, with_whole_stamps
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
@@ -51,7 +52,8 @@ def read_log(
     motion
         "linear" or "rotary", where the unit of the position does not say it.
     sheet
-        The name of the sheet of a workbook, where several hold a recording.
+        The name of the sheet of a workbook, where several hold a recording; the number of an episode of a
+        LeRobot dataset, where one alone is to be read.
 
     Raises
     ------
@@ -113,47 +115,36 @@ def log_of(
 
 def table_of_file(path: Path, sheet: str | None = None) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load."""
+    first = path
     if path.is_dir() and not (path / "metadata.yaml").is_file():
-        from zwidth.data.logs.parquet import dataset_files, parquet_table
+        from zwidth.data.logs.parquet import dataset_files
 
-        files = dataset_files(path)
-        if len(files) == 1:
-            return parquet_table(files[0])
-        if files:
-            raise InputError(
-                f"{path} is a LeRobot dataset with {len(files)} files; name one of them, such as {files[0]}"
-            )
-        raise InputError(
-            f"{path} is a directory, and no rosbag2: there is no metadata.yaml in it; name a file"
-        )
+        first = dataset_files(path)[0]
     if not path.exists():
         raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}")
     start = b""
-    if not path.is_dir():
-        with open(path, "rb") as file:
+    if not first.is_dir():
+        with open(first, "rb") as file:
             start = file.read(520)
+    if start.startswith(b"version https://git-lfs"):
+        raise InputError(f"{first} is a pointer of Git LFS and holds no data: git lfs pull fetches the file")
     if start[:4] == b"PK\x03\x04":
         return _in_archive(path, sheet)
     if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
         raise InputError(f"{path} is {_old_office(path)}")
-    if sheet is not None:
-        raise InputError(f'{path} is no workbook and has no sheets: leave sheet="{sheet}" out')
-    if start[:4] == b"PAR1":
+    if start[:4] == b"PAR1" or first != path:
         from zwidth.data.logs.parquet import parquet_table
 
-        return parquet_table(path)
-    if start[:8] == b"\x89HDF\r\n\x1a\n" or start[512:520] == b"\x89HDF\r\n\x1a\n":
-        from zwidth.data.logs.scientific import hdf5_table
+        return parquet_table(path, sheet)
+    if sheet is not None:
+        raise InputError(f'{path} is no workbook and has no sheets: leave sheet="{sheet}" out')
+    is_hdf5 = b"\x89HDF\r\n\x1a\n" in (start[:8], start[512:520])
+    if is_hdf5 or start.startswith((b"\x93NUMPY", b"MATLAB")) or path.suffix.lower() == ".mat":
+        from zwidth.data.logs.scientific import hdf5_table, matlab_table, numpy_table
 
-        return hdf5_table(path)
-    if start[:6] == b"\x93NUMPY":
-        from zwidth.data.logs.scientific import numpy_table
-
-        return numpy_table(path)
-    if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
-        from zwidth.data.logs.scientific import matlab_table
-
-        return matlab_table(path)
+        if is_hdf5:
+            return hdf5_table(path)
+        return numpy_table(path) if start.startswith(b"\x93NUMPY") else matlab_table(path)
     if start.startswith(b"\x89MCAP"):
         from zwidth.data.logs.served import mcap_head, served_table
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from difflib import get_close_matches
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -11,7 +12,7 @@ from typing import NamedTuple
 from zwidth.data.logs.cells import is_nothing
 from zwidth.data.logs.layout import Layout, is_value, laid_out, sample_of
 from zwidth.data.logs.table import PIECE, Finding, Table, Values, listed
-from zwidth.data.logs.text import Parser, unit_in
+from zwidth.data.logs.text import Parser, unit_in, wide
 from zwidth.errors import InputError
 
 
@@ -71,7 +72,7 @@ def _table(book: Sheets, name: str, grid: Grid) -> Table:
         text = f"rows {first} to {last} of the sheet are another table and left out"
         notes[f"rows {first}"] = Finding(kind="other table", text=text)
 
-    def read(columns: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+    def read(layout: Layout, columns: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
         _refuse_formulas(book, name, grid, columns)
         parser = Parser(_source(book, name), layout, columns)
         for k in range(layout.skipped, len(grid.lines), PIECE):
@@ -79,7 +80,10 @@ def _table(book: Sheets, name: str, grid: Grid) -> Table:
         parser.report(notes)
 
     units = {column: unit_in(layout, column) for column in layout.names}
-    return Table(source=_source(book, name), units=units, read=read, notes=notes, sheet=name)
+    table = Table(
+        source=_source(book, name), units=units, read=partial(read, layout), notes=notes, sheet=name
+    )
+    return wide(table, layout, read)
 
 
 def _refuse_formulas(book: Sheets, name: str, grid: Grid, columns: tuple[str, ...]) -> None:

@@ -24,6 +24,9 @@ PIECE = 2**18
 MOST_COLUMNS = 64
 """Of one matrix, or one message: more are no columns of a log."""
 
+LEFT_OUT = "the others are left out"
+"""Said of runs, where one is looked at."""
+
 Values = NDArray[Any]
 
 
@@ -44,6 +47,8 @@ class Table:
     then."""
     likely: Mapping[str, str] = field(default_factory=dict)
     """What a unit that nobody states may be, in words, of a column of which the format lets one guess."""
+    origin: list[Any] = field(default_factory=list)
+    """From which on stamps that are dates are counted, once it is known: in every log of the table."""
     sheet: str = ""
     """Name of the sheet of a workbook; else ""."""
     sheets: tuple[Table, ...] = ()
@@ -149,6 +154,19 @@ def _joined(table: Table, joined: str, seconds: str, rest: str, unit: int) -> Ta
         if n != rest
     }
     return replace(table, units=units, read=read)
+
+
+def nearest(wanted: Values, stamps: Values, values: Values) -> Values:
+    """The value nearest in time to each wanted stamp; NaN where none is within half a period."""
+    if stamps.size == 0 or wanted.size < 2:
+        return np.full(wanted.size, np.nan)
+    order = np.argsort(stamps, kind="stable")
+    stamps, values = stamps[order], values[order]
+    right = np.clip(np.searchsorted(stamps, wanted), 0, stamps.size - 1)
+    left = np.maximum(right - 1, 0)
+    near = np.where(np.abs(stamps[left] - wanted) <= np.abs(stamps[right] - wanted), left, right)
+    reach = 0.5 * float(np.nanmedian(np.diff(np.sort(wanted))))
+    return np.where(np.abs(stamps[near] - wanted) <= 1.02 * reach, values[near], np.nan)
 
 
 BLOCK_SIZE = 2**18

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -25,7 +28,8 @@ from zwidth.data.logs.cells import (
     stamps_of,
     text_of,
 )
-from zwidth.data.logs.layout import LABVIEW, Layout, is_comment, layout_of, split
+from zwidth.data.logs.layout import LABVIEW, Layout, columns_of_topics, is_comment, layout_of, split
+from zwidth.data.logs.records import Records
 from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
@@ -37,21 +41,27 @@ _UNITS = {"date": "ns", "calendar": "ns", "clock": "s"}
 _MOST_BROKEN = 0.01
 """Share of rows of another length beyond which the file is not what it seems."""
 
+MOST_NOTES = 50
+"""Lines of text below a table; more are no notes."""
+
 
 def text_table(path: Path) -> Table:
     with opened_text(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)
+        left = file.left_out if isinstance(file, Records) else ""
     layout = layout_of(text_of(start, str(path)), str(path), whole)
     _refuse_one_column(layout, path)
-    _refuse_long_table(layout, path)
+    notes = {"left out": Finding(kind="left out", text=left)} if left else {}
+    read = partial(_read, path, notes)
     table = Table(
         source=str(path),
         units={name: unit_in(layout, name) for name in layout.names},
-        read=lambda names: _read(path, layout, names, table.notes),
+        read=partial(read, layout),
         attributes=_attributes(layout),
+        notes=notes,
     )
-    return table
+    return wide(table, layout, read)
 
 
 def unit_in(layout: Layout, name: str) -> str | None:
@@ -60,46 +70,65 @@ def unit_in(layout: Layout, name: str) -> str | None:
 
 
 def _refuse_one_column(layout: Layout, path: Path) -> None:
-    if len(layout.names) == 1 and layout.header:
-        for sign, name in ((",", "comma"), (";", "semicolon"), ("\t", "tab"), ("|", "|")):
-            fields = layout.header.count(sign) + 1
-            if fields > 1:
-                raise InputError(
-                    f"{path}: the header splits into {fields} names at each {name}, but the rows do not; "
-                    "use one delimiter throughout"
-                )
-
-
-_OF_NAMES = "topic name signal channel variable series key field metric label parameter"
-
-
-def _refuse_long_table(layout: Layout, path: Path) -> None:
-    """One in which a column names the quantity whose number stands in another."""
-    bare = {name.strip("_ ").lower(): name for name in layout.names}
-    name = next((bare[word] for word in _OF_NAMES.split() if word in bare), "")
-    if name and "value" in bare and layout.kind(name) == "text":
-        found = list(dict.fromkeys(filter(None, layout.fields(name))))
-        if len(found) > 1:
+    for sign, name in ((",", "comma"), (";", "semicolon"), ("\t", "tab"), ("|", "|")):
+        if len(layout.names) == 1 and (more := layout.header.count(sign)):
             raise InputError(
-                f'{path} is a long table: its column "{bare["value"]}" holds {len(found)} quantities, '
-                f'{listed(found)}, by "{name}"; make a column of each, in pandas with '
-                f'table.pivot(index="{layout.names[0]}", columns="{name}", values="{bare["value"]}")'
+                f"{path}: the header splits into {more + 1} names at each {name}, but the rows do not; "
+                "use one delimiter throughout"
             )
 
 
+def wide(
+    table: Table, layout: Layout, read: Callable[[Layout, tuple[str, ...]], Iterator[tuple[Values, ...]]]
+) -> Table:
+    """A table of a row for each number, beside which its topic stands, as one with a column for each topic,
+    whose rows still hold one number; another table as it is."""
+    *labels, value = columns_of_topics(layout.names) or ("",)
+    labels = [n for n in labels if layout.kind(n) == "text" or all(map(str.isdecimal, layout.fields(n)))]
+    layout = replace(layout, words=(*labels, value))
+    found = read(layout, tuple(labels)) if labels else ()
+    topics = Counter(topic for columns in found for topic in _topics(columns))
+    if len(topics) < 2:
+        return table
+    others = {name: unit for name, unit in table.units.items() if name not in layout.words}
+    decimal = decimal_of(layout.fields(value)) or layout.decimal
+
+    def pivoted(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+        stamps = tuple(name for name in names if name in others)
+        wanted = [name for name in names if name not in others]
+        if wanted and (left := topics.total() - sum(topics[topic] for topic in wanted)):
+            text = f"a row for each number, by {listed(labels)}: {left} of other topics are left out"
+            table.notes["topics"] = Finding(kind="topics left out", text=text, samples=left)
+        for columns in read(layout, (*stamps, *layout.words)):
+            given = dict(zip(stamps, columns, strict=False))
+            of_row = np.array(_topics(columns[len(stamps) : -1]))
+            for topic in wanted:
+                found = [number(text or "", decimal) for text in columns[-1][of_row == topic]]
+                if None in found:
+                    raise InputError(f'{table.source}: "{topic}" holds text; only numbers are read')
+                given[topic] = np.full(of_row.size, np.nan)
+                given[topic][of_row == topic] = found
+            kept = np.isin(of_row, wanted or list(topics))
+            yield tuple(given[name][kept] for name in names)
+
+    return replace(table, units={**dict.fromkeys(topics), **others}, read=pivoted)
+
+
+def _topics(columns: tuple[Values, ...]) -> list[str]:
+    """What each row names, in one column or in several."""
+    return [".".join(filter(None, parts)) for parts in zip(*columns, strict=True)]
+
+
 def _attributes(layout: Layout) -> dict[str, Any]:
-    for line in layout.comments:
-        if line.startswith("# {"):
-            try:
-                found = json.loads(line[2:])
-            except ValueError:
-                return {}
-            return found if isinstance(found, dict) else {}
-    return {}
+    try:
+        found = json.loads(next((line[2:] for line in layout.comments if line.startswith("# {")), "{}"))
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def _read(
-    path: Path, layout: Layout, names: tuple[str, ...], notes: dict[str, Finding]
+    path: Path, notes: dict[str, Finding], layout: Layout, names: tuple[str, ...]
 ) -> Iterator[tuple[Values, ...]]:
     parser = Parser(str(path), layout, names)
     with opened_text(path) as file:
@@ -136,30 +165,33 @@ class Parser:
         self.unfinished = False
         letters = re.sub(r"[^a-zA-Z]|[eEdDnNaAiIfF]", "", layout.header)
         self._letter = letters[:1].encode()  # in the header, and in no number
-        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns")}
+        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns"), "words": pa.string()}
         for name in names:
             if layout.kind(name) == "text":
                 raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
         self.types = {name: kinds[kind] for name in names if (kind := layout.kind(name)) in kinds}
-        self._sheet = Sheet(source, layout, names)
         self._by_cells = len(self.types) < len(set(names))
-        self.notes, self.first_note = 0, ""
+        self._decimal = {name: decimal_of(layout.fields(name)) or layout.decimal for name in names}
+        self._last = dict.fromkeys(names, float("nan"))
+        self.notes: list[str] = []
 
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
-        if not lines:
-            return
         cleaned = self._cleaned(lines)
         if cleaned.strip():
             parts = self._quickly(cleaned)
             if parts is None:
                 self._by_cells = True
-                parts = self._cell_by_cell(cleaned)
+                parts = [self._cell_by_cell(cleaned.decode())]
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
                     f"{self.source}: {self.broken} of {self.rows + self.broken} rows have another number of "
                     f"columns than {len(self.layout.names)}; it is no table"
                 )
-            yield from parts
+            start, step = self.layout.counted or (0.0, 1.0)
+            count = self.layout.names[0] if self.layout.counted else None
+            for part in parts:
+                named = zip(self.names, part, strict=True)
+                yield tuple(start + step * v if name == count else v for name, v in named)
 
     def _quickly(self, lines: bytes) -> list[tuple[Values, ...]] | None:
         """None where a cell is not written as the quick reader has it."""
@@ -174,14 +206,6 @@ class Parser:
         self.rows += table.num_rows
         return [tuple(_numbers(part.column(name)) for name in self.names) for part in table.to_batches()]
 
-    def _cell_by_cell(self, lines: bytes) -> list[tuple[Values, ...]]:
-        piece = self._sheet.read(lines.decode(), self._line)
-        self.rows += piece.columns[0].size
-        self.broken += piece.broken
-        self.notes += piece.notes
-        self.first_note = self.first_note or piece.first_note
-        return [piece.columns]
-
     def report(self, notes: dict[str, Finding]) -> None:
         if self.unfinished:
             text = "the last line has no end, it may be cut off; it is left out"
@@ -191,8 +215,8 @@ class Parser:
             text = f"{self.broken} rows have another number of columns than {columns}; they are left out"
             notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
         if self.notes:
-            lines = "1 line" if self.notes == 1 else f"{self.notes} lines"
-            text = f'{lines} of text below the table left out: "{self.first_note}"'
+            lines = "1 line" if len(self.notes) == 1 else f"{len(self.notes)} lines"
+            text = f'{lines} of text below the table left out: "{self.notes[0]}"'
             notes["text"] = Finding(kind="text", text=text)
         if self.headers:
             text = (
@@ -236,60 +260,24 @@ class Parser:
             lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
         return lines
 
-    @property
-    def _line(self) -> int:
-        return self.layout.skipped + self.rows + self.broken
-
     def _example(self, name: str) -> str:
         fields = self.layout.fields(name)
         return next((field for field in fields if not (is_number(field) or is_nothing(field))), "")[:40]
 
+    # Rows of a spreadsheet cell by cell, where they are not written plainly enough for the quick reader.
+    #
+    # Thousands in groups, columns with different decimal signs, times of day, dates as people write them,
+    # words for a missing number, lines of text below the table.  One between numbers is refused: nobody knows
+    # what it was.
 
-def _numbers(column: pa.Array) -> Values:
-    if not column.null_count and not pa.types.is_timestamp(column.type):
-        return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
-    values: Values = column.to_numpy(zero_copy_only=False)
-    if values.dtype == np.object_:
-        return values.astype(np.float64)
-    return values
-
-
-# Rows of a spreadsheet cell by cell, where they are not written plainly enough for the quick reader.
-#
-# Thousands in groups, columns with different decimal signs, times of day, dates as people write them, words
-# for a missing number, lines of text below the table.  A line of text between numbers is refused: nobody
-# knows what it was.
-
-MOST_NOTES = 50
-"""Lines of text below a table; more are no notes."""
-
-
-class Piece(NamedTuple):
-    """Columns, how many rows were of another length, and the lines of text below, the first of them."""
-
-    columns: tuple[Values, ...]
-    broken: int
-    notes: int
-    first_note: str
-
-
-class Sheet:
-    """The cells of some columns; how a column is written is decided once."""
-
-    def __init__(self, source: str, layout: Layout, names: tuple[str, ...]) -> None:
-        self.source, self.layout, self.names = source, layout, names
-        self._decimal = {name: decimal_of(layout.fields(name)) or layout.decimal for name in names}
-        self._last = dict.fromkeys(names, float("nan"))
-
-    def read(self, lines: str, before: int) -> Piece:
-        """The columns of whole lines, which come after so many of the file."""
-        rows, broken = [], 0
+    def _cell_by_cell(self, lines: str) -> tuple[Values, ...]:
+        rows, before = [], self.layout.skipped + self.rows + self.broken
         for k, line in enumerate(lines.splitlines()):
             if not line.strip() or is_comment(line):
                 continue
             fields = self._fitted(split(line, self.layout.delimiter))
             if fields is None:
-                broken += 1
+                self.broken += 1
             else:
                 rows.append((before + k + 1, fields))
         wanted = [self.layout.names.index(name) for name in self.names]
@@ -298,14 +286,9 @@ class Sheet:
             for name, k in zip(self.names, wanted, strict=True)
         ]
         end = self._end(rows, columns, wanted)
-        notes = [fields for _, fields in rows[end:] if any(fields)]
-        note = " ".join(field for field in notes[0] if field)[:60] if notes else ""
-        return Piece(
-            tuple(self._values(name, column[:end]) for name, column in zip(self.names, columns, strict=True)),
-            broken,
-            len(notes),
-            note,
-        )
+        self.rows += end
+        self.notes += [" ".join(filter(None, fields))[:60] for _, fields in rows[end:] if any(fields)]
+        return tuple(self._values(n, column[:end]) for n, column in zip(self.names, columns, strict=True))
 
     def _fitted(self, fields: list[str]) -> list[str] | None:
         """As many as there are names: empty ones at the end do not count."""
@@ -317,6 +300,8 @@ class Sheet:
     def _column(self, name: str, fields: list[str]) -> list[object]:
         """What each cell says; None where it is something else."""
         kind = self.layout.kind(name)
+        if kind == "words":
+            return list(fields)
         if kind == "clock":
             return [float("nan") if is_nothing(field) else clock(field) for field in fields]
         if kind in ("calendar", "date"):
@@ -350,10 +335,20 @@ class Sheet:
 
     def _values(self, name: str, column: list[object]) -> Values:
         kind = self.layout.kind(name)
-        if kind in ("calendar", "date"):
-            return np.array(column, dtype="datetime64[ns]")
+        if kind in ("calendar", "date", "words"):
+            return np.array(column, dtype=object if kind == "words" else "datetime64[ns]")
         values = np.array(column, dtype=float)
         if kind == "clock" and values.size:
             values = past_midnight(values, self._last[name])
             self._last[name] = float(values[-1])
         return values
+
+
+def _numbers(column: pa.Array) -> Values:
+    words = pa.types.is_string(column.type)
+    if not column.null_count and not pa.types.is_timestamp(column.type) and not words:
+        return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
+    values: Values = column.to_numpy(zero_copy_only=False)
+    if values.dtype == np.object_ and not words:
+        return values.astype(np.float64)
+    return values

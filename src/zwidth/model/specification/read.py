@@ -306,12 +306,24 @@ _READ_BY = {
 """Who reads a file of another kind."""
 
 
+def refuse_settings(text: str, name: str) -> None:
+    """Of OpenFFBoard's configurator a profile, or a copy of the flash: no number has a unit."""
+    if any(all(f'"{key}":' in text for key in keys.split()) for keys in ("cls cmd value", "flash addr val")):
+        raise InputError(
+            f"{name}: settings of a force-feedback wheel (OpenFFBoard) without units: its effects, 0 to 255, "
+            "are parts of a full scale that only the board's firmware and its motor driver know. Measure "
+            "the torque against angle and speed, and give that: zwidth check openffboard-wheel --stiffness "
+            '"5 N*m/rad" --virtual-damping "0.1 N*m*s/rad"; why it shakes, zwidth diagnose RECORDING tells'
+        )
+
+
 def _parse(text: str, name: str) -> dict[str, Any]:
     import tomllib  # only where a file is read
 
     try:
         return tomllib.loads(text, parse_float=Decimal)
     except tomllib.TOMLDecodeError as error:
+        refuse_settings(text, name)
         other = _READ_BY.get(Path(name).suffix.lower())
         if other is not None:
             raise InputError(f"{name}: not TOML, which devices and laws are written in; {other}") from None

@@ -18,6 +18,7 @@ import numpy as np
 
 from zwidth.data.logs.columns import POUND, WEIGHT, measured_in
 from zwidth.data.logs.read import table_of_file
+from zwidth.data.logs.rows import side_by_side
 from zwidth.data.logs.table import Finding, Table, listed, readable, understood_sheets
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
@@ -313,12 +314,14 @@ def _read(
         raise InputError(
             f"{table.source} has {len(pieces) and whole[0].size} rows; a test has 1 to {MOST_ROWS}"
         )
+    keys = ("time", "indentation", "force", "trial")[: len(wanted)]
+    tests = side_by_side(table, dict(zip(keys, wanted, strict=True)), dict(zip(keys, whole, strict=True)))
     return Raw(
         table.source,
-        _seconds(whole[0], known.time.factor),
-        whole[1].astype(float) * known.indentation.factor,
-        whole[2].astype(float) * known.force.factor,
-        whole[3].astype(float) if known.trial else None,
+        _seconds(tests["time"], known.time.factor),
+        tests["indentation"].astype(float) * known.indentation.factor,
+        tests["force"].astype(float) * known.force.factor,
+        tests["trial"].astype(float) if known.trial else None,
         (*known.findings, *table.notes.values()),
         known.beside,
     )
