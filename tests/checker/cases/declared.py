@@ -111,7 +111,8 @@ _OF_A_ROW = {f"law.{name}" for name in ("counts_force_limit", "counts_force_reso
 
 
 def what_is_shown() -> str:
-    """All but kind, format and proof, and other parts of one; arms, hand and spring by their names."""
+    """All but kind, format and proof, and other parts of one; arms, hand, spring and transmission by their
+    names."""
     kinds = import_module("zwidth.checker.kinds")
     for kind in kinds.KINDS:
         record = kinds.fields_of(kind)
@@ -121,7 +122,8 @@ def what_is_shown() -> str:
         )
         named = {name for name, field in _within(record) if getattr(field, "named", False)}
         arms = {f"loop.{arm}" for arm in _ARMS} if "pair" in kind else set()
-        others = {"held"} if "held" in kind else {"spring"} if kind == "null space" else set()
+        words = {"held": "held", "null space": "spring", "transmission": "transmission"}
+        others = {part for word, part in words.items() if word in kind}
         proof = record.fields.get("proof")
         if hidden != right or named != arms | others or (proof and proof.shown):
             return f"{kind}: {hidden} are not shown, {named} by their names"

@@ -157,6 +157,15 @@ CASES = [
         violation(([1, 0], [1, -1 + TINY]), cable(encoder="handle"), UNSTABLE),
         "not shown to be unstable",
     ),
+    # H(z) is 1 or 0: the hand does not feel the mode
+    refused(
+        "a pole at 2 that cancels", violation(([1, -2], [1, -2]), cable(), UNSTABLE), "have a common factor"
+    ),
+    refused(
+        "a pole at 2 of nothing, the encoder at the hand",
+        violation(([0, 0], [1, -2]), cable(encoder="handle"), UNSTABLE),
+        "have a common factor",
+    ),
     accepted("it pulls", violation(([-TINY], [1]), cable(), STATIC), "H(1) is negative"),
     accepted("it pulls at the hand", violation(([-TINY], [1]), cable(encoder="handle"), STATIC)),
     refused(
