@@ -29,7 +29,13 @@ from zwidth.passivity.advice import Advice
 from zwidth.passivity.certificate import FORMAT, Certificate, positivity_document
 from zwidth.passivity.linear.boundary import COARSE, largest_holding
 from zwidth.passivity.linear.loop import linear_loop
-from zwidth.passivity.linear.transmission import Elastic, ElasticProof, ElasticRefutation, decide_elastic
+from zwidth.passivity.linear.transmission import (
+    LARGEST_TURN,
+    Elastic,
+    ElasticProof,
+    ElasticRefutation,
+    decide_elastic,
+)
 from zwidth.passivity.scope import Contact, Outcome, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.elastic import ElasticViolation, elastic_document
@@ -241,6 +247,8 @@ def _unknown(given: Transmission, device: Device, law: Environment) -> str:
         why = "of a transmission whose stiffness is not known no more is proved: give transmission.stiffness"
     elif device.mass is None:
         why = "give the mass of the motor's side, with which it swings on its transmission"
+    elif _certain(given.damping) + _certain(given.handle_damping):
+        why = "of one so stiff, or with so little friction behind it, no more is decided"
     else:
         why = "friction inside the transmission or on the hand's side is needed for more: give it"
     at_motor = given.encoder == "motor"
@@ -265,7 +273,8 @@ def elastic_of(device: Device, law: Environment) -> Elastic | None:
         return None
     at_handle = given.encoder == "handle"
     mass, stiffness = device.motor_side.exact("mass"), _certain(given.stiffness)
-    return Elastic(loop, mass, stiffness, inside, outside, at_handle)
+    found = Elastic(loop, mass, stiffness, inside, outside, at_handle)
+    return found if found.turn <= LARGEST_TURN else None
 
 
 def _certain(value: Any) -> Fraction:

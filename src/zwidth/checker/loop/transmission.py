@@ -63,7 +63,7 @@ ELASTIC_VIOLATION = document(
     }
 )
 
-LARGEST_TURN = 2000
+LARGEST_TURN = 600
 """Of √|K|."""
 MOST_TERMS = 150
 """Coefficients of H(z) and samples of delay."""

@@ -30,7 +30,6 @@ from math import cos, pi
 
 from flint import acb, arb, arb_poly, fmpz_poly
 
-from zwidth.errors import InputError
 from zwidth.passivity.linear.exact_algebra import is_schur
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
@@ -45,7 +44,7 @@ _ROOM = 90
 _APART = 100
 """Bits below two roots by which equal ones are taken apart: what is claimed is decided by the checker."""
 
-LARGEST_TURN = 2000
+LARGEST_TURN = 400
 """|a| T up to which a criterion is written down: far more than any cable asks for at its rate."""
 
 
@@ -93,11 +92,6 @@ class Elastic:
     @property
     def bits(self) -> int:
         """Of a ball that holds the criterion well."""
-        if not self.turn <= LARGEST_TURN:
-            raise InputError(
-                f"a transmission so stiff that {self.turn:.3g} of its radians pass in a sample is not "
-                f"decided (at most {LARGEST_TURN}): take it for rigid, and leave it out"
-            )
         return _BITS + 8 * int(self.turn) + 8 * self.loop.degree
 
     def value(self, cosine: Fraction) -> arb:
