@@ -275,7 +275,8 @@ def _steps_table(steps: _Steps) -> Table:
 
 def _beyond(verdict: Answer) -> Iterator[str]:
     """What a verdict is not about, so that nobody reads more into it than was proved."""
-    if verdict.outcome == "active" and not isinstance(verdict, Verdict):
+    given = verdict.scope.transmission
+    if verdict.outcome == "active" and (not isinstance(verdict, Verdict) or given == "as given"):
         yield "Whether given hands make this motion: zwidth simulate shows what hands of your choice meet."
     elif verdict.outcome == "active":
         yield (
@@ -289,7 +290,8 @@ def _beyond(verdict: Answer) -> Iterator[str]:
             "A device of other numbers: the proof is about those below. Measure the device's own friction; "
             "where there is less of it, or a slower or later loop, ask again."
         )
-    yield "What bends between motor, encoder and handle, and torque ripple of the motor."
+    bends = "What bends between motor, encoder and handle" if given == "rigid" else "Backlash of a gear"
+    yield f"{bends}, and torque ripple of the motor."
     yield "Other forces that the same program adds to this law: ask about the law that is their sum."
 
 

@@ -8,7 +8,7 @@ from math import pi
 from pathlib import PurePath
 from typing import Any
 
-from zwidth.model.device import Device, catalogue
+from zwidth.model.device import Device, Transmission, catalogue
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.environment.environment import Environment
 from zwidth.model.kind import name_of
@@ -19,7 +19,7 @@ from zwidth.model.specification.table import COMMAND_LINE, Table
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.parameter import Parameter, parameters_of
 from zwidth.quantity.text import in_words, readable, shown, unit_text
 
 _WRITTEN_AS = {
@@ -66,6 +66,7 @@ def of_verdict(verdict: Verdict) -> Provenance:
         where = f"the worst of the interval {_IN_PYTHON}" if key in scope.intervals else _IN_PYTHON
         origin = _published(key, value, known) or _unless_assumed(key, scope.assumed, where)
         numbers.append((*_named(key, value, device.motion), origin))
+    numbers += [(*named, _IN_PYTHON) for named in _of_the_transmission(device)]
     law = ("law", verdict.environment.describe(device.motion), _IN_PYTHON)
     return Provenance((*numbers, law))
 
@@ -80,9 +81,22 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
         asked = "inertia" if _is_inertia(key, device.motion) else key
         where = _place(table, written, asked) if written else _of_the_catalogue(key, value, known, ranges)
         yield (*_named(key, value, device.motion), where or _unless_assumed(key, device.assumed, "not given"))
+    yield from ((*named, of_file(table.label)) for named in _of_the_transmission(device))
     for key, own in ROTARY.items():
         if key in table.values and not (key == "inertia" and device.motion == "rotary"):  # it is told above
             yield in_words(key), as_written(table.values[key], own.unit), _place(table, key, key)
+
+
+def _of_the_transmission(device: Device) -> Iterator[tuple[str, str]]:
+    """Its numbers, and where the encoder sits."""
+    given = device.transmission
+    if given is None:
+        return
+    for key, value in given.parameters().items():
+        own = parameters_of(Transmission)[key]
+        named = f"transmission: {in_words(key)} {own.quantity.symbol}"
+        yield named, _value(value, own.unit_for(device.motion))
+    yield "transmission: encoder", f"at the {given.encoder}"
 
 
 def of_environment(
