@@ -66,7 +66,7 @@ def of_verdict(verdict: Verdict) -> Provenance:
         where = f"the worst of the interval {_IN_PYTHON}" if key in scope.intervals else _IN_PYTHON
         origin = _published(key, value, known) or _unless_assumed(key, scope.assumed, where)
         numbers.append((*_named(key, value, device.motion), origin))
-    numbers += [(*named, _IN_PYTHON) for named in _of_the_transmission(device)]
+    numbers += [(what, value, _IN_PYTHON) for _, what, value in _of_the_transmission(device)]
     law = ("law", verdict.environment.describe(device.motion), _IN_PYTHON)
     return Provenance((*numbers, law))
 
@@ -81,22 +81,26 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
         asked = "inertia" if _is_inertia(key, device.motion) else key
         where = _place(table, written, asked) if written else _of_the_catalogue(key, value, known, ranges)
         yield (*_named(key, value, device.motion), where or _unless_assumed(key, device.assumed, "not given"))
-    yield from ((*named, of_file(table.label)) for named in _of_the_transmission(device))
+    inside: Any = table.values.get("transmission", {})
+    for name, what, number in _of_the_transmission(device):
+        option = f"transmission.{name}"
+        where = of_file(table.label) if name in inside else _DEFAULT
+        yield what, number, _place(table, option, option) if table.is_typed(option) else where
     for key, own in ROTARY.items():
         if key in table.values and not (key == "inertia" and device.motion == "rotary"):  # it is told above
             yield in_words(key), as_written(table.values[key], own.unit), _place(table, key, key)
 
 
-def _of_the_transmission(device: Device) -> Iterator[tuple[str, str]]:
-    """Its numbers, and where the encoder sits."""
+def _of_the_transmission(device: Device) -> Iterator[Row]:
+    """The key, what it is, its value."""
     given = device.transmission
     if given is None:
         return
     for key, value in given.parameters().items():
         own = parameters_of(Transmission)[key]
         named = f"transmission: {in_words(key)} {own.quantity.symbol}"
-        yield named, _value(value, own.unit_for(device.motion))
-    yield "transmission: encoder", f"at the {given.encoder}"
+        yield key, named, _value(value, own.unit_for(device.motion))
+    yield "encoder", "transmission: encoder", f"at the {given.encoder}"
 
 
 def of_environment(
