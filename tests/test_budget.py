@@ -17,27 +17,27 @@ SOURCE = Path(zw.__file__).parent
 FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}")]
 
 LINES = {
-    "beside the rooms": 928,
-    "checker": 10017,
-    "cli": 10435,
-    "data": 21573,
-    "links": 2316,
-    "loop": 6064,
-    "machine": 17454,
-    "model": 17234,
+    "beside the rooms": 929,
+    "checker": 10400,
+    "cli": 10426,
+    "data": 21773,
+    "links": 2317,
+    "loop": 6595,
+    "machine": 17455,
+    "model": 17448,
     "native": 1658,
-    "passivity": 26530,
+    "passivity": 27252,
     "quantity": 2056,
-    "show": 8844,
+    "show": 8868,
     "study": 5485,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 130594
-PHYSICS = 61901
+IN_ALL = 132662
+PHYSICS = 63751
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 652, 25
+FILES_IN_ALL, IN_A_FOLDER = 659, 25
 
 ALONE = 134
 """Files that one other file alone imports."""
