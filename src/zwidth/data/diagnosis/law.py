@@ -30,7 +30,20 @@ _BEST = 3
 _SPEEDS = (0.0, 0.01, 0.03, 0.1, 0.3)
 """Candidates of v_s, in usual speeds."""
 
-_EXACT = 1e-9
+_LIKELY = 6
+"""Combinations that are fitted in all rows."""
+
+_FINER = (1.6, 1.3, 1.15, 1.08, 1.04, 1.02)
+"""Steps of v_s about the best of the candidates."""
+
+_FEWEST = 8
+_LESS = 0.99
+_NEAR = 0.02
+"""Of a force from end to end, by which it may differ from an end and be cut off."""
+
+_EDGE = 1e-4
+"""Of a spring's force from end to end, below which it is off outside its wall."""
+_EXACT = 1e-6
 """Share of a variance below which what is left over is rounding."""
 
 _RIDGE = 1e-12
@@ -97,16 +110,23 @@ def fit(
     times = np.arange(position.size, dtype=np.float64) * row_period
     everywhere = np.arange(first, position.size, max(1, (position.size - first) // _MOST_ROWS))
     ends = float(force.min()), float(force.max())
-    data = _Data(position, times, force, rows, everywhere, loop_period, row_period, ends)
+    side = float(np.sign(force.mean()))
+    data = _Data(position, times, force, rows, everywhere, loop_period, row_period, ends, side)
     tries = [tried for lag in lags for tried in _at_lag(data, lag)]
     if not tries:
         return None
-    best = min(tries, key=lambda tried: tried.bic)
+    likely = sorted(tries, key=lambda tried: tried.bic)[:_LIKELY]
+    best = min((_settled(data, tried) for tried in likely), key=lambda tried: tried.bic)
+    named = dict(zip(best.part, best.terms.tolist(), strict=False))
+    damped = next((k for k in best.part if k in _DAMPED), None)
+    helped = next((k for k in best.part if k in _HELPED), None)
+    compensation = 0.0 if helped is None else named[helped]
     return Law(
-        stiffness=best.stiffness, damping=best.damping, window=best.window, compensation=best.compensation,
+        stiffness=named.get(0, 0.0), damping=0.0 if damped is None else named[damped],
+        window=1 if damped is None else WINDOWS[damped - 1], compensation=compensation,
         compensation_speed=best.speed, lag=best.lag, unexplained=best.left, limited=float(sides.mean()),
         limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(away.mean()),
-        compensated=_compensated(best, position, times, loop_period),
+        compensated=-compensation * _bent(_move(data, best.lag, times), best.speed),
     )  # fmt: skip
 
 
@@ -144,11 +164,12 @@ class _Tried(NamedTuple):
     bic: float
     left: float
     lag: float
-    stiffness: float
-    damping: float
-    window: int
-    compensation: float
+    part: tuple[int, ...]
+    terms: Array
+    """Of the columns of `part`, then of 1."""
     speed: float
+    wall: bool
+    """Whether it acts on one side of a place."""
 
 
 class _Data(NamedTuple):
@@ -162,6 +183,8 @@ class _Data(NamedTuple):
     loop_period: float
     row_period: float
     ends: tuple[float, float]
+    side: float
+    """Sign of the force of a wall."""
 
 
 def _at_lag(data: _Data, lag: float) -> list[_Tried]:
@@ -175,7 +198,7 @@ def _at_lag(data: _Data, lag: float) -> list[_Tried]:
     table /= scale
     middle = float(y.mean())
     gram, answer, size = table.T @ table, table.T @ (y - middle), float(((y - middle) ** 2).sum())
-    fits: list[tuple[float, list[int], Array]] = []
+    fits: list[tuple[float, tuple[int, ...], Array]] = []
     for parts in _COMBINATIONS:
         systems = gram[parts[:, :, None], parts[:, None, :]] + _RIDGE * y.size * np.eye(parts.shape[1])
         solved = np.linalg.solve(systems, answer[parts][:, :, None])[:, :, 0]
@@ -184,11 +207,18 @@ def _at_lag(data: _Data, lag: float) -> list[_Tried]:
             if (found > 0).all():
                 left = max(size - float(gained), 0.0) / size
                 bic = y.size * np.log(left + _EXACT) + part.size * np.log(y.size)
-                fits.append((bic, list(part), found / scale[part]))
+                fits.append((bic, tuple(part.tolist()), found / scale[part]))
     fits.sort(key=lambda fit: fit[0])
-    return [
-        _tried(data, lag, part, terms, middle - float(means[part] @ terms)) for _, part, terms in fits[:_BEST]
-    ]
+    speeds = (0.0, *_speeds(data.position, data.row_period))
+    everywhere = np.column_stack([_columns(data, lag, data.everywhere), np.ones(data.everywhere.size)])
+    tries = []
+    for _, part, terms in fits[:_BEST]:
+        terms = np.append(terms, middle - float(means[[*part]] @ terms))
+        speed = speeds[max(0, part[-1] - _DAMPED.stop + 1)]
+        for wall in (False, True)[: 1 + (0 in part)]:
+            tried = _Tried(np.inf, np.inf, lag, part, terms, speed, wall)
+            tries.append(_judged(data, everywhere[:, [*part, -1]], tried)[0])
+    return tries
 
 
 def _columns(data: _Data, lag: float, rows: NDArray[np.intp]) -> Array:
@@ -205,34 +235,59 @@ def _columns(data: _Data, lag: float, rows: NDArray[np.intp]) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _tried(data: _Data, lag: float, part: list[int], terms: Array, offset: float) -> _Tried:
-    """One combination, judged in all rows: the force is cut off where the file's own ends."""
+def _own(data: _Data, tried: _Tried) -> Array:
+    """The columns of one combination, with its own speed, and 1."""
+    table = _columns(data, tried.lag, data.everywhere)
+    for k in _HELPED:
+        table[:, k] = -_bent(table[:, 1], tried.speed)
+    return np.column_stack([table[:, tried.part], np.ones(table.shape[0])])
+
+
+def _judged(data: _Data, table: Array, tried: _Tried) -> tuple[_Tried, Array, Array]:
+    """In all rows, and what it asks for before it is cut off where the file's own force ends: outside a wall
+    the terms of the spring and the damper are 0."""
     y = data.force[data.everywhere]
-    model = np.clip(_columns(data, lag, data.everywhere)[:, part] @ terms + offset, *data.ends)
-    left = float(((y - model) ** 2).mean() / (np.var(y) or 1.0))
-    named = dict(zip(part, terms, strict=True))
-    damped = [k for k in part if k in _DAMPED]
-    helped = [k for k in part if k in _HELPED]
-    return _Tried(
-        bic=y.size * np.log(left + _EXACT) + (len(part) + 2) * np.log(y.size),
-        left=left,
-        lag=lag,
-        stiffness=float(named.get(0, 0.0)),
-        damping=float(named[damped[0]]) if damped else 0.0,
-        window=WINDOWS[damped[0] - 1] if damped else 1,
-        compensation=float(named[helped[0]]) if helped else 0.0,
-        speed=_speeds(data.position, data.row_period)[helped[0] - _HELPED.start] if helped else 0.0,
-    )
+    if tried.wall:
+        spring = tried.terms[0] * table[:, 0] + tried.terms[-1]
+        inside = data.side * spring > _EDGE * np.ptp(spring)
+        table = np.where(np.array([*(k in _HELPED for k in tried.part), False]) | inside[:, None], table, 0.0)
+    asked = table @ tried.terms
+    left = float(((y - np.clip(asked, *data.ends)) ** 2).mean() / (np.var(y) or 1.0))
+    bic = y.size * np.log(left + _EXACT) + (len(tried.part) + 2) * np.log(y.size)
+    return tried._replace(left=left, bic=bic), table, asked
+
+
+def _settled(data: _Data, tried: _Tried) -> _Tried:
+    """Least squares of what is cut off, in all rows, and v_s between those of the list."""
+    best = _cut_off(data, tried)
+    for step in _FINER if tried.speed else ():
+        near = (_cut_off(data, best._replace(speed=best.speed * by)) for by in (step, 1 / step))
+        best = min(best, *near, key=lambda one: one.left)
+    return best
+
+
+def _cut_off(data: _Data, tried: _Tried) -> _Tried:
+    """Fitted where neither the last fit nor the file is cut off, as long as that leaves less."""
+    whole, y = _own(data, tried), data.force[data.everywhere]
+    (low, high), near = data.ends, _NEAR * (data.ends[1] - data.ends[0])
+    best, table, asked = _judged(data, whole, tried)
+    while True:
+        free = ~((asked >= high) & (y > high - near) | (asked <= low) & (y < low + near))
+        terms = np.linalg.lstsq(table[free], y[free], rcond=None)[0]
+        again, table, asked = _judged(data, whole, best._replace(terms=terms))
+        if free.sum() < _FEWEST or not (terms[:-1] > 0).all() or again.left > _LESS * best.left:
+            return best
+        best = again
 
 
 def _bent(speed: Array, least: float) -> Array:
     return np.asarray(np.tanh(speed / least) if least > 0 else np.sign(speed))
 
 
-def _compensated(best: _Tried, position: Array, times: Array, loop_period: float) -> Array:
-    before = np.interp(times - best.lag - loop_period, times, position)
-    move = (np.interp(times - best.lag, times, position) - before) / loop_period
-    return np.asarray(-best.compensation * _bent(move, best.speed))
+def _move(data: _Data, lag: float, times: Array) -> Array:
+    """[m/s; rad/s] by the last difference."""
+    x, before = (np.interp(times - late, data.times, data.position) for late in (lag, lag + data.loop_period))
+    return np.asarray((x - before) / data.loop_period)
 
 
 def _away(force: Array) -> Rows:
