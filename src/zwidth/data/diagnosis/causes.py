@@ -178,6 +178,12 @@ def _velocity(seen: Evidence) -> Iterator[str]:
         f"B = {shown(seen.law.damping, seen.unit('virtual_damping'), 3)} on {window}, at "
         f"{seen.vibration.frequency * seen.loop_period:.2f} of the sample rate"
     )
+    if seen.pulse:
+        takes = "" if seen.lost is None else f", in a cycle friction takes {shown(seen.lost, 'J', 2)}"
+        yield (
+            f"a count of the encoder is an impulse of B times {shown(seen.resolution, seen.unit('position'), 3)}: "
+            f"{shown(seen.pulse, 'J', 2)} to the mass{takes}"
+        )
     yield f"the damper gives {_share(seen, 'differenced velocity')}: it pushes"
 
 
