@@ -212,7 +212,11 @@ def gather(
     resolution = known.resolution or recording.resolution or _count(x)
     supplied = _terms(fitted, motion, delay, force if commanded is None else commanded)
     pulse = 0.0
-    if known.mass and fitted.law is not None and _reads_counts(fitted.law, vibration, resolution, file.loop_period):
+    if (
+        known.mass
+        and fitted.law is not None
+        and _reads_counts(fitted.law, vibration, resolution, file.loop_period)
+    ):
         pulse = (fitted.law.damping * resolution) ** 2 / (2 * known.mass)
         supplied["differenced velocity"] = max(supplied["differenced velocity"], pulse)
     lost = None

@@ -9,7 +9,7 @@ the force stands at its limit or is off are left out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 WINDOWS = (1, 2, 3, 5, 8, 10, 15, 20)
 
 _MOST_ROWS = 3000
-_FEWEST_ROWS = 30
+_FEWEST_ROWS = 10
 _BEST = 3
 _SPEEDS = (0.0, 0.01, 0.03, 0.1, 0.3)
 """Candidates of v_s, in usual speeds."""
@@ -36,7 +36,9 @@ _LIKELY = 6
 _FINER = (1.6, 1.3, 1.15, 1.08, 1.04, 1.02)
 """Steps of v_s about the best of the candidates."""
 
-_FEWEST = 8
+_TELLS = 0.2
+"""Of a force from end to end, that rows which are not cut off must hold to be fitted alone."""
+
 _LESS = 0.99
 _NEAR = 0.02
 """Of a force from end to end, by which it may differ from an end and be cut off."""
@@ -102,21 +104,25 @@ def fit(
     first = min(first, position.size // 2)
     rows = np.flatnonzero(free(force))
     rows = rows[rows >= first]
-    if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
+    if rows.size < _FEWEST_ROWS or np.ptp(force[rows]) < _TELLS * np.ptp(force):
         sides, rows = np.zeros_like(sides), np.arange(first, position.size)
     if rows.size < _FEWEST_ROWS or not np.ptp(force[rows]):
         return None
     rows = rows[:: max(1, rows.size // _MOST_ROWS)]
     times = np.arange(position.size, dtype=np.float64) * row_period
     everywhere = np.arange(first, position.size, max(1, (position.size - first) // _MOST_ROWS))
-    ends = float(force.min()), float(force.max())
-    side = float(np.sign(force.mean()))
-    data = _Data(position, times, force, rows, everywhere, loop_period, row_period, ends, side)
+    data = _Data(
+        at=_between(position, times, row_period > 1.5 * loop_period), times=times, force=force, free=rows,
+        everywhere=everywhere, loop_period=loop_period, speeds=_speeds(position, row_period),
+        ends=(float(force.min()), float(force.max())), side=float(np.sign(force.mean())),
+    )  # fmt: skip
     tries = [tried for lag in lags for tried in _at_lag(data, lag)]
     if not tries:
         return None
-    likely = sorted(tries, key=lambda tried: tried.bic)[:_LIKELY]
-    best = min((_settled(data, tried) for tried in likely), key=lambda tried: tried.bic)
+    tries.sort(key=lambda tried: tried.bic)
+    if _held(force, _NEAR).sum() <= force.size - _FEWEST_ROWS:
+        tries = sorted((_settled(data, tried) for tried in tries[:_LIKELY]), key=lambda tried: tried.bic)
+    best = tries[0]
     named = dict(zip(best.part, best.terms.tolist(), strict=False))
     damped = next((k for k in best.part if k in _DAMPED), None)
     helped = next((k for k in best.part if k in _HELPED), None)
@@ -126,14 +132,21 @@ def fit(
         window=1 if damped is None else WINDOWS[damped - 1], compensation=compensation,
         compensation_speed=best.speed, lag=best.lag, unexplained=best.left, limited=float(sides.mean()),
         limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(away.mean()),
-        compensated=-compensation * _bent(_move(data, best.lag, times), best.speed),
+        compensated=compensation * _columns(data._replace(speeds=[best.speed]), best.lag, slice(None))[:, -1],
     )  # fmt: skip
 
 
 def free(force: Array) -> Rows:
     """Rows in which a force is neither at its limit nor off."""
-    away = _away(force)
-    return ~(_at_ends(force) | away) if away.mean() > 0.05 else ~_at_ends(force)
+    away, size = _away(force), np.abs(force)
+    held = _at_ends(force) | (size >= 0.9995 * size.max())
+    return np.asarray(~(held | away) if away.mean() > 0.05 else ~held)
+
+
+def _held(force: Array, within: float) -> Rows:
+    """Rows in which it is at either end or off: one that ever is so may be that of any law."""
+    levels = np.array([force.min(), 0.0, force.max()])
+    return np.asarray((np.abs(force[:, None] - levels) <= within * np.ptp(force)).any(axis=1))
 
 
 def known(
@@ -175,13 +188,15 @@ class _Tried(NamedTuple):
 class _Data(NamedTuple):
     """What is fitted: the rows in which the force is free, and all of them, where it may be cut off."""
 
-    position: Array
+    at: Callable[[Array], Array]
+    """The position at some times: along a cubic, where samples of the loop are not in the file."""
     times: Array
     force: Array
     free: NDArray[np.intp]
     everywhere: NDArray[np.intp]
     loop_period: float
-    row_period: float
+    speeds: list[float]
+    """[m/s; rad/s] candidates of v_s."""
     ends: tuple[float, float]
     side: float
     """Sign of the force of a wall."""
@@ -209,7 +224,7 @@ def _at_lag(data: _Data, lag: float) -> list[_Tried]:
                 bic = y.size * np.log(left + _EXACT) + part.size * np.log(y.size)
                 fits.append((bic, tuple(part.tolist()), found / scale[part]))
     fits.sort(key=lambda fit: fit[0])
-    speeds = (0.0, *_speeds(data.position, data.row_period))
+    speeds = (0.0, *data.speeds)
     everywhere = np.column_stack([_columns(data, lag, data.everywhere), np.ones(data.everywhere.size)])
     tries = []
     for _, part, terms in fits[:_BEST]:
@@ -221,17 +236,13 @@ def _at_lag(data: _Data, lag: float) -> list[_Tried]:
     return tries
 
 
-def _columns(data: _Data, lag: float, rows: NDArray[np.intp]) -> Array:
+def _columns(data: _Data, lag: float, rows: NDArray[np.intp] | slice) -> Array:
     """x, v by each window, and −tanh(v/v_s) of the last move by each speed."""
     here = data.times[rows] - lag
-
-    def at(t: Array) -> Array:
-        return np.interp(t, data.times, data.position)
-
-    x = at(here)
+    x = data.at(here)
     columns = [x]
-    columns += [(x - at(here - n * data.loop_period)) / (n * data.loop_period) for n in WINDOWS]
-    columns += [-_bent(columns[1], speed) for speed in _speeds(data.position, data.row_period)]
+    columns += [(x - data.at(here - n * data.loop_period)) / (n * data.loop_period) for n in WINDOWS]
+    columns += [-_bent(columns[1], speed) for speed in data.speeds]
     return np.stack(columns, axis=1)
 
 
@@ -261,8 +272,8 @@ def _settled(data: _Data, tried: _Tried) -> _Tried:
     """Least squares of what is cut off, in all rows, and v_s between those of the list."""
     best = _cut_off(data, tried)
     for step in _FINER if tried.speed else ():
-        near = (_cut_off(data, best._replace(speed=best.speed * by)) for by in (step, 1 / step))
-        best = min(best, *near, key=lambda one: one.left)
+        near = (min(best.speed * by, data.speeds[-1]) for by in (step, 1 / step))
+        best = min(best, *(_cut_off(data, best._replace(speed=v)) for v in near), key=lambda one: one.left)
     return best
 
 
@@ -273,9 +284,9 @@ def _cut_off(data: _Data, tried: _Tried) -> _Tried:
     best, table, asked = _judged(data, whole, tried)
     while True:
         free = ~((asked >= high) & (y > high - near) | (asked <= low) & (y < low + near))
-        terms = np.linalg.lstsq(table[free], y[free], rcond=None)[0]
+        terms = np.asarray(np.linalg.lstsq(table[free], y[free], rcond=None)[0], dtype=np.float64)
         again, table, asked = _judged(data, whole, best._replace(terms=terms))
-        if free.sum() < _FEWEST or not (terms[:-1] > 0).all() or again.left > _LESS * best.left:
+        if free.sum() < _FEWEST_ROWS or not (terms[:-1] > 0).all() or again.left > _LESS * best.left:
             return best
         best = again
 
@@ -284,10 +295,13 @@ def _bent(speed: Array, least: float) -> Array:
     return np.asarray(np.tanh(speed / least) if least > 0 else np.sign(speed))
 
 
-def _move(data: _Data, lag: float, times: Array) -> Array:
-    """[m/s; rad/s] by the last difference."""
-    x, before = (np.interp(times - late, data.times, data.position) for late in (lag, lag + data.loop_period))
-    return np.asarray((x - before) / data.loop_period)
+def _between(position: Array, times: Array, missing: bool) -> Callable[[Array], Array]:
+    if not missing:
+        return lambda t: np.interp(t, times, position)
+    from scipy.interpolate import CubicSpline  # scipy takes its time
+
+    cubic = CubicSpline(times, position)
+    return lambda t: np.asarray(cubic(np.clip(t, 0.0, times[-1])))
 
 
 def _away(force: Array) -> Rows:
