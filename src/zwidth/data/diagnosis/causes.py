@@ -179,11 +179,7 @@ def _velocity(seen: Evidence) -> Iterator[str]:
         f"{seen.vibration.frequency * seen.loop_period:.2f} of the sample rate"
     )
     if seen.pulse:
-        takes = "" if seen.lost is None else f", in a cycle friction takes {shown(seen.lost, 'J', 2)}"
-        yield (
-            f"a count of the encoder is an impulse of B times {shown(seen.resolution, seen.unit('position'), 3)}: "
-            f"{shown(seen.pulse, 'J', 2)} to the mass{takes}"
-        )
+        yield f"each count of the encoder gives the mass (B Δ)²/2m = {shown(seen.pulse, 'J', 2)}"
     yield f"the damper gives {_share(seen, 'differenced velocity')}: it pushes"
 
 

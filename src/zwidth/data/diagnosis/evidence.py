@@ -9,8 +9,8 @@ h = sinc(ωT/2) exp(−jωT/2) and the delay τ.  So what goes in comes apart, t
 
     sampling               the spring, through the hold
     delay                  what exp(−jωτ) adds to spring and damper
-    differenced velocity   the damper through its estimate and the hold, where that is positive; where the
-                           estimate is none or a count, what the impulse B Δ of a count gives the mass, (B Δ)²/2m
+    differenced velocity   the damper through its estimate and the hold, where that is positive; or what the
+                           impulse B Δ of one count gives the mass, where no more are seen at a time
     friction compensation  the force along the motion
     drive damping          what the drive adds by itself
     actuator limit         what a limited rate adds
@@ -211,14 +211,8 @@ def gather(
     aims = (file.x - file.error)[file.steady]
     resolution = known.resolution or recording.resolution or _count(x)
     supplied = _terms(fitted, motion, delay, force if commanded is None else commanded)
-    pulse = 0.0
-    if (
-        known.mass
-        and fitted.law is not None
-        and _reads_counts(fitted.law, vibration, resolution, file.loop_period)
-    ):
-        pulse = (fitted.law.damping * resolution) ** 2 / (2 * known.mass)
-        supplied["differenced velocity"] = max(supplied["differenced velocity"], pulse)
+    if pulse := _pulse(fitted.law, known, vibration, resolution, file.loop_period):
+        supplied["differenced velocity"] = pulse
     lost = None
     if known.damping is not None:
         viscous = np.pi * motion.omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
@@ -429,23 +423,21 @@ def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[
     return supplied
 
 
-_PLACES = 8
-"""Fewer than a log's own step is found from."""
-
-_COUNTS = 2.0
-"""Of the encoder, that a damper sees pass in its window."""
-
-
 def _count(x: Array) -> float:
     """[m; rad] between the few places at which all of a motion is; 0 where those are many."""
     places = np.unique(x)
     return float(np.diff(places).min()) if 1 < places.size < min(_PLACES, x.size / _PLACES) else 0.0
 
 
-def _reads_counts(found: Law, vibration: Vibration, resolution: float, period: float) -> bool:
-    """Whether the largest speed, π f times the swing, is but a count or two of its window."""
+def _pulse(found: Law | None, known: Known, vibration: Vibration, resolution: float, period: float) -> float:
+    """[J] (B Δ)²/2m, where the largest speed, π f times the swing, is of a count or two in the window."""
+    if found is None or not known.mass:
+        return 0.0
     passed = np.pi * vibration.frequency * vibration.swing * found.window * period
-    return passed < _COUNTS * resolution
+    return (found.damping * resolution) ** 2 / (2 * known.mass) if passed < _COUNTS * resolution else 0.0
+
+
+_PLACES, _COUNTS = 8, 2.0
 
 
 def _standing(x: Array, period: float, cycle: float) -> float:

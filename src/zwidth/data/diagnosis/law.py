@@ -26,25 +26,22 @@ WINDOWS = (1, 2, 3, 5, 8, 10, 15, 20)
 
 _MOST_ROWS = 3000
 _FEWEST_ROWS = 10
-_BEST = 3
+_BEST, _LIKELY = 3, 6
+"""Combinations that are judged in all rows of a lag, and fitted in all rows of all lags."""
+
 _SPEEDS = (0.0, 0.01, 0.03, 0.1, 0.3)
 """Candidates of v_s, in usual speeds."""
-
-_LIKELY = 6
-"""Combinations that are fitted in all rows."""
 
 _FINER = (1.6, 1.3, 1.15, 1.08, 1.04, 1.02)
 """Steps of v_s about the best of the candidates."""
 
-_TELLS = 0.2
-"""Of a force from end to end, that rows which are not cut off must hold to be fitted alone."""
-
-_LESS = 0.99
-_NEAR = 0.02
-"""Of a force from end to end, by which it may differ from an end and be cut off."""
+_TELLS, _NEAR = 0.2, 0.02
+"""Of a force from end to end: what rows must hold to be fitted alone; near an end, or off."""
 
 _EDGE = 1e-4
-"""Of a spring's force from end to end, below which it is off outside its wall."""
+"""The same of a spring: what is outside its wall."""
+
+_LESS = 0.99
 _EXACT = 1e-6
 """Share of a variance below which what is left over is rounding."""
 
@@ -76,10 +73,6 @@ class Law:
     """Share of the force's variance that the law leaves over."""
     limited: float
     """Share of the time for which the force stands at its limit."""
-    limit: float
-    """[N; N·m] where it stands then; 0 if it never does."""
-    away: float
-    """Share of the time for which there is no force."""
     compensated: Array = field(repr=False)
     """[N; N·m] the force of F in each row."""
     transfer: tuple[Array, Array] | None = field(default=None, repr=False)
@@ -99,7 +92,7 @@ def fit(
     position: Array, force: Array, row_period: float, loop_period: float, lags: Sequence[float]
 ) -> Law | None:
     """The law of a force in a stretch; None where it does not follow the motion at all."""
-    sides, away = _at_ends(force), _away(force)
+    sides = _at_ends(force)
     first = int(np.ceil((max(lags) + max(WINDOWS) * loop_period) / row_period)) + 1
     first = min(first, position.size // 2)
     rows = np.flatnonzero(free(force))
@@ -120,19 +113,18 @@ def fit(
     if not tries:
         return None
     tries.sort(key=lambda tried: tried.bic)
-    if _held(force, _NEAR).sum() <= force.size - _FEWEST_ROWS:
+    levels = np.array([*data.ends, 0.0])
+    between = (np.abs(force[:, None] - levels) > _NEAR * np.ptp(force)).all(axis=1)
+    if between.sum() >= _FEWEST_ROWS:  # else it is ever at an end or off, and of many laws
         tries = sorted((_settled(data, tried) for tried in tries[:_LIKELY]), key=lambda tried: tried.bic)
     best = tries[0]
-    named = dict(zip(best.part, best.terms.tolist(), strict=False))
-    damped = next((k for k in best.part if k in _DAMPED), None)
-    helped = next((k for k in best.part if k in _HELPED), None)
-    compensation = 0.0 if helped is None else named[helped]
+    named = dict.fromkeys(range(_HELPED.stop), 0.0) | dict(zip(best.part, best.terms.tolist(), strict=False))
+    damped = next((k for k in best.part if k in _DAMPED), 1)
+    helped = next((k for k in best.part if k in _HELPED), _HELPED.start)
     return Law(
-        stiffness=named.get(0, 0.0), damping=0.0 if damped is None else named[damped],
-        window=1 if damped is None else WINDOWS[damped - 1], compensation=compensation,
+        stiffness=named[0], damping=named[damped], window=WINDOWS[damped - 1], compensation=named[helped],
         compensation_speed=best.speed, lag=best.lag, unexplained=best.left, limited=float(sides.mean()),
-        limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(away.mean()),
-        compensated=compensation * _columns(data._replace(speeds=[best.speed]), best.lag, slice(None))[:, -1],
+        compensated=named[helped] * _columns(data, best.lag, slice(None), best.speed)[:, helped],
     )  # fmt: skip
 
 
@@ -141,12 +133,6 @@ def free(force: Array) -> Rows:
     away, size = _away(force), np.abs(force)
     held = _at_ends(force) | (size >= 0.9995 * size.max())
     return np.asarray(~(held | away) if away.mean() > 0.05 else ~held)
-
-
-def _held(force: Array, within: float) -> Rows:
-    """Rows in which it is at either end or off: one that ever is so may be that of any law."""
-    levels = np.array([force.min(), 0.0, force.max()])
-    return np.asarray((np.abs(force[:, None] - levels) <= within * np.ptp(force)).any(axis=1))
 
 
 def known(
@@ -160,13 +146,11 @@ def known(
     transfer: tuple[Array, Array],
 ) -> Law:
     """A law that was stated, as one that was found: H(z) at rest is the spring where it has none by name."""
-    sides = _at_ends(force)
     helps, speed, helped = compensation
     at_rest = float(np.sum(transfer[0]) / np.sum(transfer[1])) if np.sum(transfer[1]) else 0.0
     return Law(
         stiffness=stiffness or at_rest, damping=damping, window=1, compensation=helps,
-        compensation_speed=speed, lag=lag, unexplained=unexplained, limited=float(sides.mean()),
-        limit=float(np.abs(force).max()) if sides.any() else 0.0, away=float(_away(force).mean()),
+        compensation_speed=speed, lag=lag, unexplained=unexplained, limited=float(_at_ends(force).mean()),
         compensated=helped, transfer=transfer,
     )  # fmt: skip
 
@@ -225,7 +209,7 @@ def _at_lag(data: _Data, lag: float) -> list[_Tried]:
                 fits.append((bic, tuple(part.tolist()), found / scale[part]))
     fits.sort(key=lambda fit: fit[0])
     speeds = (0.0, *data.speeds)
-    everywhere = np.column_stack([_columns(data, lag, data.everywhere), np.ones(data.everywhere.size)])
+    everywhere = _columns(data, lag, data.everywhere)
     tries = []
     for _, part, terms in fits[:_BEST]:
         terms = np.append(terms, middle - float(means[[*part]] @ terms))
@@ -236,22 +220,13 @@ def _at_lag(data: _Data, lag: float) -> list[_Tried]:
     return tries
 
 
-def _columns(data: _Data, lag: float, rows: NDArray[np.intp] | slice) -> Array:
-    """x, v by each window, and −tanh(v/v_s) of the last move by each speed."""
+def _columns(data: _Data, lag: float, rows: NDArray[np.intp] | slice, speed: float | None = None) -> Array:
+    """x, v by each window, −tanh(v/v_s) of the last move by each speed, or by one, and 1."""
     here = data.times[rows] - lag
     x = data.at(here)
-    columns = [x]
-    columns += [(x - data.at(here - n * data.loop_period)) / (n * data.loop_period) for n in WINDOWS]
-    columns += [-_bent(columns[1], speed) for speed in data.speeds]
-    return np.stack(columns, axis=1)
-
-
-def _own(data: _Data, tried: _Tried) -> Array:
-    """The columns of one combination, with its own speed, and 1."""
-    table = _columns(data, tried.lag, data.everywhere)
-    for k in _HELPED:
-        table[:, k] = -_bent(table[:, 1], tried.speed)
-    return np.column_stack([table[:, tried.part], np.ones(table.shape[0])])
+    moves = [(x - data.at(here - n * data.loop_period)) / (n * data.loop_period) for n in WINDOWS]
+    speeds = data.speeds if speed is None else [speed] * len(_SPEEDS)
+    return np.stack([x, *moves, *(-_bent(moves[0], v) for v in speeds), np.ones_like(x)], axis=1)
 
 
 def _judged(data: _Data, table: Array, tried: _Tried) -> tuple[_Tried, Array, Array]:
@@ -279,14 +254,15 @@ def _settled(data: _Data, tried: _Tried) -> _Tried:
 
 def _cut_off(data: _Data, tried: _Tried) -> _Tried:
     """Fitted where neither the last fit nor the file is cut off, as long as that leaves less."""
-    whole, y = _own(data, tried), data.force[data.everywhere]
+    whole = _columns(data, tried.lag, data.everywhere, tried.speed)[:, [*tried.part, -1]]
+    y = data.force[data.everywhere]
     (low, high), near = data.ends, _NEAR * (data.ends[1] - data.ends[0])
     best, table, asked = _judged(data, whole, tried)
     while True:
         free = ~((asked >= high) & (y > high - near) | (asked <= low) & (y < low + near))
         terms = np.asarray(np.linalg.lstsq(table[free], y[free], rcond=None)[0], dtype=np.float64)
         again, table, asked = _judged(data, whole, best._replace(terms=terms))
-        if free.sum() < _FEWEST_ROWS or not (terms[:-1] > 0).all() or again.left > _LESS * best.left:
+        if free.sum() < _FEWEST_ROWS or not (terms[:-1] > 0).all() or again.left >= _LESS * best.left:
             return best
         best = again
 

@@ -21,7 +21,7 @@ from zwidth.data.diagnosis.evidence import Evidence, gather
 from zwidth.data.diagnosis.pairs.recording import holds_two_arms
 from zwidth.data.diagnosis.recording import Recording, read
 from zwidth.data.diagnosis.result import Diagnosis
-from zwidth.data.diagnosis.vibration import find
+from zwidth.data.diagnosis.vibration import find, reversing
 from zwidth.data.logs import Log
 from zwidth.errors import InputError
 from zwidth.model.device import Device
@@ -92,7 +92,9 @@ def diagnose(
             f"{taken.source} holds a {taken.motion} motion and the device is {device.motion}: "
             "which one is meant?"
         )
-    vibration = find(taken.position, taken.period)
+    force = taken.applied if taken.commanded is None else taken.commanded
+    assert force is not None
+    vibration = find(taken.position, taken.period) or reversing(taken.position, force, taken.period)
     if vibration is None:
         return _still(taken)
     found = _named(taken, gather(taken, vibration, device, law), device)
@@ -211,6 +213,8 @@ def doubt(cause: str, seen: Evidence) -> str | None:
             f"a stretch in which the target stands still: in this one it moves at the same "
             f"{shown(vibration.frequency, 'Hz', 3)}, {100 * aimed:.3g} % as far, and the motion is commanded"
         )
+    if vibration.of_force:
+        return "every sample of the loop: the force jumps to and fro, and the motion in these rows does not"
     if vibration.growth < _DIES:
         return "a stretch in which it goes on: in this one it dies out by itself"
     uneven = vibration.frequency_spread > _WANDERS * vibration.frequency

@@ -9,7 +9,7 @@ four pieces.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,8 +27,8 @@ LOWEST = 1.5
 SLOWEST = 0.4
 """[Hz] of a regular one."""
 
-QUICK = 12.0
-"""[Hz] of a buzz in a part of a recording in which a hand moves: that motion is a drift to it."""
+QUICK = (12.0, 6.0, 3.0)
+"""[Hz] at least, of a buzz in a part of a recording in which a hand moves: that motion is a drift to it."""
 
 _IN_A_PART = 97.0
 """Percentile of the size of what shakes in a thirtieth of the recording or more."""
@@ -77,6 +77,9 @@ class Vibration:
     """Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
     its second half where it is more: what dies out goes on to, after a start it stays."""
 
+    of_force: bool = False
+    """Whether it is the force's, and the motion shows none."""
+
     @property
     def angular(self) -> float:
         """[rad/s] ω."""
@@ -86,8 +89,8 @@ class Vibration:
 def find(position: Array, period: float) -> Vibration | None:
     """The stretch that vibrates; None where nothing goes to and fro often enough.
 
-    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and a quick
-    one under the motion of a hand; each must itself be regular.
+    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and quick
+    ones in a part, under the motion of a hand; each must itself be regular.
     """
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
@@ -103,10 +106,26 @@ def find(position: Array, period: float) -> Vibration | None:
         ):
             return slow
     if found is None or found.regular < _IRREGULAR:
-        quick = _above(QUICK, position, period, _IN_A_PART)
-        if quick is not None and quick.regular > _REGULAR:
-            return quick
+        for lowest in QUICK:
+            quick = _above(lowest, position, period, _IN_A_PART)
+            if quick is not None and quick.regular > _REGULAR:
+                return quick
     return found
+
+
+def reversing(position: Array, force: Array, period: float) -> Vibration | None:
+    """The longest stretch in which a force jumps to and fro over half of its range, as no hand moves: the
+    motion under it may be of a few counts, or quicker than the rows show."""
+    jumps = np.diff(force)
+    at = np.flatnonzero(np.abs(jumps) > 0.5 * np.ptp(force))
+    back = at[1:][jumps[at[1:]] * jumps[at[:-1]] < 0]
+    runs = np.split(back, np.flatnonzero(np.diff(back) * period > _BLOCK) + 1)
+    longest = max(runs, key=len)
+    if longest.size < 2 * FEWEST_CYCLES:
+        return None
+    rows = slice(int(longest[0]), int(longest[-1]) + 2)
+    found = _measured(position, rows, rows, peak(_without_line(force[rows]), period), period)
+    return replace(found, of_force=True)
 
 
 def nothing(time: Array) -> str:
@@ -139,6 +158,13 @@ def _above(lowest: float, position: Array, period: float, large: float = 75.0) -
         return None
     around = rows
     rows, frequency = _steadiest(position, rows, frequency, period, lowest)
+    return _measured(position, rows, around, frequency, period, lowest)
+
+
+def _measured(
+    position: Array, rows: slice, around: slice, frequency: float, period: float, lowest: float = LOWEST
+) -> Vibration:
+    """What is in these rows at that frequency."""
     y = _without_line(position[rows])
     pieces = [peak(_without_line(part), period, lowest) for part in np.array_split(y, 4)]
     spread = max(float(np.std(pieces)) / 2, 0.02 / (y.size * period))
