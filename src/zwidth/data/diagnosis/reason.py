@@ -257,14 +257,8 @@ less than the first; of 400 commanded motions one in a hundred.  The second is t
 _ALONG_A_SINE = 5e-4
 """The same of a compensation of friction: what moves along a sine takes such a force by its own friction."""
 
-_CUT_OFF = 0.3
-"""Share of the time at a limit from which the little that is seen of a law between may leave more."""
-
 _FEEDS = 0.7
 """Share of the energy that a drive must add to be what feeds a motion, whatever asks for it."""
-
-_MANY_TIMES = 5.0
-"""What friction takes, that a damper gives which shakes between two counts: there its own law is rounded."""
 
 
 def _may_be_commanded(cause: str, seen: Evidence) -> bool:
@@ -273,13 +267,9 @@ def _may_be_commanded(cause: str, seen: Evidence) -> bool:
     in_drive = seen.recorded == "both" and cause in ("drive damping", "delay", "actuator limit")
     if in_drive and seen.supplied[cause] >= _FEEDS * abs(seen.energy):
         return False
-    if cause == "differenced velocity" and seen.lost and seen.supplied[cause] > _MANY_TIMES * seen.lost:
-        return False
     slow = seen.vibration.frequency < min(_PLANNED, 1 / (_SAMPLES * seen.loop_period))
     if slow and seen.aimed is None:
-        cut_off = seen.law is not None and seen.law.limited > _CUT_OFF and left < 0.05
-        most = _ALONG_A_SINE if cause == "friction compensation" else _OF_ONE_PLACE
-        return left > most and not cut_off
+        return left > (_ALONG_A_SINE if cause == "friction compensation" else _OF_ONE_PLACE)
     return left > _OF_A_LAW and not (cause == "structural resonance" or in_drive)
 
 
