@@ -135,7 +135,7 @@ class Evidence:
     stated: Stated | None = None
     """The law as somebody stated it, beside the force; None where nobody did."""
     pulse: float = 0.0
-    """[J] (B Δ)²/2m, where the speed that the damper reads is none or a count or two; else 0."""
+    """[J] (B Δ)²/2m, where the damper reads few counts; else 0."""
     aimed: float | None = None
     """How far the target moves at the frequency, against the motion; None where the file has none."""
 
@@ -426,18 +426,15 @@ def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[
 def _count(x: Array) -> float:
     """[m; rad] between the few places at which all of a motion is; 0 where those are many."""
     places = np.unique(x)
-    return float(np.diff(places).min()) if 1 < places.size < min(_PLACES, x.size / _PLACES) else 0.0
+    return float(np.diff(places).min()) if 1 < places.size < min(8, x.size / 8) else 0.0
 
 
 def _pulse(found: Law | None, known: Known, vibration: Vibration, resolution: float, period: float) -> float:
-    """[J] (B Δ)²/2m, where the largest speed, π f times the swing, is of a count or two in the window."""
-    if found is None or not known.mass:
+    """[J] (B Δ)²/2m, where the largest speed, π f times the swing, is of at most three counts in a window."""
+    speed = np.pi * vibration.frequency * vibration.swing
+    if found is None or not known.mass or speed * found.window * period > 3 * resolution:
         return 0.0
-    passed = np.pi * vibration.frequency * vibration.swing * found.window * period
-    return (found.damping * resolution) ** 2 / (2 * known.mass) if passed < _COUNTS * resolution else 0.0
-
-
-_PLACES, _COUNTS = 8, 2.0
+    return (found.damping * resolution) ** 2 / (2 * known.mass)
 
 
 def _standing(x: Array, period: float, cycle: float) -> float:

@@ -30,18 +30,12 @@ _BEST, _LIKELY = 3, 6
 """Combinations that are judged in all rows of a lag, and fitted in all rows of all lags."""
 
 _SPEEDS = (0.0, 0.01, 0.03, 0.1, 0.3)
-"""Candidates of v_s, in usual speeds."""
-
 _FINER = (1.6, 1.3, 1.15, 1.08, 1.04, 1.02)
-"""Steps of v_s about the best of the candidates."""
+"""Candidates of v_s, in usual speeds, and steps about the best of them."""
 
-_TELLS, _NEAR = 0.2, 0.02
-"""Of a force from end to end: what rows must hold to be fitted alone; near an end, or off."""
+_TELLS, _NEAR, _EDGE = 0.2, 0.02, 1e-4
+"""Of a force from end to end: what rows must hold to be fitted alone; near an end; at a wall's edge."""
 
-_EDGE = 1e-4
-"""The same of a spring: what is outside its wall."""
-
-_LESS = 0.99
 _EXACT = 1e-6
 """Share of a variance below which what is left over is rounding."""
 
@@ -104,17 +98,16 @@ def fit(
     rows = rows[:: max(1, rows.size // _MOST_ROWS)]
     times = np.arange(position.size, dtype=np.float64) * row_period
     everywhere = np.arange(first, position.size, max(1, (position.size - first) // _MOST_ROWS))
+    usual = float(np.std(np.diff(position))) / row_period
     data = _Data(
         at=_between(position, times, row_period > 1.5 * loop_period), times=times, force=force, free=rows,
-        everywhere=everywhere, loop_period=loop_period, speeds=_speeds(position, row_period),
+        everywhere=everywhere, loop_period=loop_period, speeds=[usual * share for share in _SPEEDS],
         ends=(float(force.min()), float(force.max())), side=float(np.sign(force.mean())),
     )  # fmt: skip
-    tries = [tried for lag in lags for tried in _at_lag(data, lag)]
+    tries = sorted((tried for lag in lags for tried in _at_lag(data, lag)), key=lambda tried: tried.bic)
     if not tries:
         return None
-    tries.sort(key=lambda tried: tried.bic)
-    levels = np.array([*data.ends, 0.0])
-    between = (np.abs(force[:, None] - levels) > _NEAR * np.ptp(force)).all(axis=1)
+    between = (np.abs(force[:, None] - (*data.ends, 0.0)) > _NEAR * np.ptp(force)).all(axis=1)
     if between.sum() >= _FEWEST_ROWS:  # else it is ever at an end or off, and of many laws
         tries = sorted((_settled(data, tried) for tried in tries[:_LIKELY]), key=lambda tried: tried.bic)
     best = tries[0]
@@ -130,7 +123,8 @@ def fit(
 
 def free(force: Array) -> Rows:
     """Rows in which a force is neither at its limit nor off."""
-    away, size = _away(force), np.abs(force)
+    size = np.abs(force)
+    away = size < 0.01 * size.max()
     held = _at_ends(force) | (size >= 0.9995 * size.max())
     return np.asarray(~(held | away) if away.mean() > 0.05 else ~held)
 
@@ -180,10 +174,8 @@ class _Data(NamedTuple):
     everywhere: NDArray[np.intp]
     loop_period: float
     speeds: list[float]
-    """[m/s; rad/s] candidates of v_s."""
     ends: tuple[float, float]
     side: float
-    """Sign of the force of a wall."""
 
 
 def _at_lag(data: _Data, lag: float) -> list[_Tried]:
@@ -226,12 +218,12 @@ def _columns(data: _Data, lag: float, rows: NDArray[np.intp] | slice, speed: flo
     x = data.at(here)
     moves = [(x - data.at(here - n * data.loop_period)) / (n * data.loop_period) for n in WINDOWS]
     speeds = data.speeds if speed is None else [speed] * len(_SPEEDS)
-    return np.stack([x, *moves, *(-_bent(moves[0], v) for v in speeds), np.ones_like(x)], axis=1)
+    bent = [-np.tanh(moves[0] / v) if v else -np.sign(moves[0]) for v in speeds]
+    return np.stack([x, *moves, *bent, np.ones_like(x)], axis=1)
 
 
 def _judged(data: _Data, table: Array, tried: _Tried) -> tuple[_Tried, Array, Array]:
-    """In all rows, and what it asks for before it is cut off where the file's own force ends: outside a wall
-    the terms of the spring and the damper are 0."""
+    """In all rows, and what it asks for before it is cut off; outside a wall, spring and damper are 0."""
     y = data.force[data.everywhere]
     if tried.wall:
         spring = tried.terms[0] * table[:, 0] + tried.terms[-1]
@@ -262,13 +254,9 @@ def _cut_off(data: _Data, tried: _Tried) -> _Tried:
         free = ~((asked >= high) & (y > high - near) | (asked <= low) & (y < low + near))
         terms = np.asarray(np.linalg.lstsq(table[free], y[free], rcond=None)[0], dtype=np.float64)
         again, table, asked = _judged(data, whole, best._replace(terms=terms))
-        if free.sum() < _FEWEST_ROWS or not (terms[:-1] > 0).all() or again.left >= _LESS * best.left:
+        if free.sum() < _FEWEST_ROWS or not (terms[:-1] > 0).all() or again.left >= 0.99 * best.left:
             return best
         best = again
-
-
-def _bent(speed: Array, least: float) -> Array:
-    return np.asarray(np.tanh(speed / least) if least > 0 else np.sign(speed))
 
 
 def _between(position: Array, times: Array, missing: bool) -> Callable[[Array], Array]:
@@ -280,30 +268,13 @@ def _between(position: Array, times: Array, missing: bool) -> Callable[[Array], 
     return lambda t: np.asarray(cubic(np.clip(t, 0.0, times[-1])))
 
 
-def _away(force: Array) -> Rows:
-    return np.asarray(np.abs(force) < 0.01 * np.abs(force).max())
-
-
 def _at_ends(force: Array) -> Rows:
-    """Rows where the force stands still at its largest: exactly, or in noise for more of the time than a
-    sine."""
+    """Rows where the force stands still at its largest: exactly, or in noise for longer than a sine."""
     size = np.abs(force)
     top = float(np.percentile(size, 99.5))
-    exact = _beside(size >= 0.9995 * size.max())
+    at = size >= 0.9995 * size.max()
+    exact = np.asarray(at & (np.append(at[1:], False) | np.append(False, at[:-1])))  # with a neighbour
     if exact.sum() >= 6:
         return exact
     noisy = size >= 0.95 * top
     return np.asarray(noisy if noisy.mean() > 0.35 else np.zeros_like(noisy))
-
-
-def _beside(at: Rows) -> Rows:
-    """Those that have a neighbour."""
-    beside = np.zeros_like(at)
-    beside[1:] |= at[:-1]
-    beside[:-1] |= at[1:]
-    return np.asarray(at & beside)
-
-
-def _speeds(position: Array, period: float) -> list[float]:
-    usual = float(np.std(np.diff(position))) / period
-    return [usual * share for share in _SPEEDS]

@@ -21,7 +21,7 @@ from zwidth.data.diagnosis.evidence import Evidence, gather
 from zwidth.data.diagnosis.pairs.recording import holds_two_arms
 from zwidth.data.diagnosis.recording import Recording, read
 from zwidth.data.diagnosis.result import Diagnosis
-from zwidth.data.diagnosis.vibration import find, reversing
+from zwidth.data.diagnosis.vibration import find
 from zwidth.data.logs import Log
 from zwidth.errors import InputError
 from zwidth.model.device import Device
@@ -92,9 +92,8 @@ def diagnose(
             f"{taken.source} holds a {taken.motion} motion and the device is {device.motion}: "
             "which one is meant?"
         )
-    force = taken.applied if taken.commanded is None else taken.commanded
-    assert force is not None
-    vibration = find(taken.position, taken.period) or reversing(taken.position, force, taken.period)
+    force = next(f for f in (taken.commanded, taken.applied) if f is not None)
+    vibration = find(taken.position, taken.period, force)
     if vibration is None:
         return _still(taken)
     found = _named(taken, gather(taken, vibration, device, law), device)
@@ -251,8 +250,7 @@ _PLANNED = 8.0
 _SAMPLES = 20
 
 _OF_ONE_PLACE, _OF_A_LAW = 5e-3, 0.1
-"""Share of the force that the law leaves over where it aims at one place: of 440 faults seven in eight left
-less than the first; of 400 commanded motions one in a hundred.  The second is that of `follows`."""
+"""Share of the force that the law leaves over where it aims at one place; the second is that of `follows`."""
 
 _ALONG_A_SINE = 5e-4
 """The same of a compensation of friction: what moves along a sine takes such a force by its own friction."""

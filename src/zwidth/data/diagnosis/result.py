@@ -25,8 +25,6 @@ from zwidth.writing import check_target, writing_whole
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from zwidth.native.compiled import Array
-
 Changed = TypeVar("Changed", bound=Lowered)
 Seen = TypeVar("Seen")
 Recorded = TypeVar("Recorded")
@@ -161,13 +159,6 @@ def key_with_unit(name: str, unit: str) -> str:
     return f"{name}_{unit.replace('/', '_per_').replace('*', '_')}"
 
 
-def _when(time: Array, around: slice) -> str:
-    """From when to when, of what is less than half of a recording."""
-    if around.stop - around.start > time.size // 2:
-        return ""
-    return f" from {time[around.start]:.4g} s to {time[around.stop - 1]:.4g} s"
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Diagnosis(Answer[Change, Evidence, Recording]):
     """Why it shook: `cause` is one of the keys of `zwidth.data.diagnosis.CAUSES`, or None where the data do
@@ -185,7 +176,9 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
         """The answer in one sentence."""
         if self.seen is None:
             return nothing(self.recording.time)
-        at = f"{shown(self.frequency, 'Hz', 3)}{_when(self.recording.time, self.seen.vibration.around)}"
+        at, time = shown(self.frequency, "Hz", 3), self.recording.time[self.seen.vibration.around]
+        if time.size < self.recording.time.size // 2:
+            at += f" from {time[0]:.4g} s to {time[-1]:.4g} s"
         if self.cause is None:
             first, second, *_ = self.likely
             return f"It shakes at {at}; the data do not say why: {first} or {second}, or something else."

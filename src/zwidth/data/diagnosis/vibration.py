@@ -10,6 +10,7 @@ four pieces.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -86,11 +87,11 @@ class Vibration:
         return 2 * np.pi * self.frequency
 
 
-def find(position: Array, period: float) -> Vibration | None:
+def find(position: Array, period: float, force: Array | None = None) -> Vibration | None:
     """The stretch that vibrates; None where nothing goes to and fro often enough.
 
     A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and quick
-    ones in a part, under the motion of a hand; each must itself be regular.
+    ones in a part, under the motion of a hand; each must itself be regular; else one of the force, in a part.
     """
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
@@ -106,26 +107,25 @@ def find(position: Array, period: float) -> Vibration | None:
         ):
             return slow
     if found is None or found.regular < _IRREGULAR:
-        for lowest in QUICK:
-            quick = _above(lowest, position, period, _IN_A_PART)
-            if quick is not None and quick.regular > _REGULAR:
-                return quick
+        quick = (_above(lowest, position, period, _IN_A_PART) for lowest in QUICK)
+        most = position.size if found is None else (found.around.stop - found.around.start) // 2
+        jumps = () if force is None else (_reversing(position, force, period, most),)
+        parts = (one for one in quick if one is not None and one.regular > _REGULAR)
+        return next(chain(parts, filter(None, jumps)), found)
     return found
 
 
-def reversing(position: Array, force: Array, period: float) -> Vibration | None:
-    """The longest stretch in which a force jumps to and fro over half of its range, as no hand moves: the
-    motion under it may be of a few counts, or quicker than the rows show."""
+def _reversing(position: Array, force: Array, period: float, most: int) -> Vibration | None:
+    """The longest stretch in which a force jumps to and fro over half of its range, whatever moves there."""
     jumps = np.diff(force)
     at = np.flatnonzero(np.abs(jumps) > 0.5 * np.ptp(force))
     back = at[1:][jumps[at[1:]] * jumps[at[:-1]] < 0]
-    runs = np.split(back, np.flatnonzero(np.diff(back) * period > _BLOCK) + 1)
-    longest = max(runs, key=len)
-    if longest.size < 2 * FEWEST_CYCLES:
+    longest = max(np.split(back, np.flatnonzero(np.diff(back) * period > _BLOCK) + 1), key=len)
+    rows = slice(int(longest[:1].sum()), int(longest[-1:].sum()) + 2)
+    if longest.size < 2 * FEWEST_CYCLES or rows.stop - rows.start > most or not np.ptp(position[rows]):
         return None
-    rows = slice(int(longest[0]), int(longest[-1]) + 2)
-    found = _measured(position, rows, rows, peak(_without_line(force[rows]), period), period)
-    return replace(found, of_force=True)
+    frequency = peak(_without_line(force[rows]), period)
+    return replace(_measured(position, rows, rows, frequency, period), of_force=True)
 
 
 def nothing(time: Array) -> str:
