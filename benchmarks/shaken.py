@@ -200,7 +200,8 @@ def _integrate(p: Array, window: int, late: int, steps: int) -> Array:
 
 
 def shakes(thing: Thing, made: Run) -> bool:
-    """True where it goes on shaking to the end, as far as a log can show: four counts, six cycles, 2 Hz.
+    """True where it goes on shaking to the end, as far as a log can show: four counts, six cycles, 2 Hz;
+    and in three times the time: what dies out slowly does not live on what feeds it.
 
     The encoder's own buzz may be as small as half a count.
     """
@@ -213,7 +214,10 @@ def shakes(thing: Thing, made: Run) -> bool:
     last = made.velocity[-made.time.size // 3 :]
     power = np.abs(np.fft.rfft((last - last.mean()) * np.hanning(last.size))) ** 2
     peak = int(np.argmax(power))
-    return peak >= 6 and peak / (last.size * thing.period) >= 2.0
+    if peak < 6 or peak / (last.size * thing.period) < 2.0:
+        return False
+    later = _swings(thing, run(replace(thing, duration=3 * thing.duration)))
+    return bool(later[-1] > 0.5 * swings[-1])
 
 
 def quiet(thing: Thing, made: Run) -> bool:

@@ -1,7 +1,7 @@
 """Draws of things that shake for one reason: a device, a law and a hand at random, and one fault put in.
 
-A draw counts where the loop shakes with the fault and is quiet without it, the hand and everything else
-unchanged: that is what it means here that the fault is the cause.  Others are drawn again.
+A draw counts where the loop goes on shaking with the fault and is quiet without it, the hand and everything
+else unchanged: that is what it means here that the fault is the cause.  Others are drawn again.
 """
 
 from __future__ import annotations

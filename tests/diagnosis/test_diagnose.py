@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -210,20 +211,61 @@ def test_with_its_law_the_motors_force_alone_shows_what_lies_between(tmp_path):
     assert found.to_dict()["stated"]["holds"]
 
 
+def cut_off(path, wall, limit):
+    """The log of a wall against which a motor can do so much, as a controller logs what it gave to it."""
+    hand = zw.operators.ConstantForce(force=0.4 * limit)
+    trace = zw.simulate(paddle(force_limit=limit), wall, hand, 2.0, initial_position=-0.01)
+    return log_of(path, trace.assign(commanded_force=trace.actuator_force), *BOTH)
+
+
 def test_a_force_that_is_off_or_at_its_limit_is_that_of_many_laws(tmp_path):
-    """A wall of 12 N/mm and a motor of 5 N: not told, and the law asked for; with it, sampling."""
-    hand = zw.operators.ConstantForce(force=2.0)
-    wall = zw.Wall("12 N/mm")
-    trace = zw.simulate(paddle(force_limit=5), wall, hand, 2.0, initial_position=-0.01)
-    cut = trace.assign(commanded_force=trace.actuator_force)  # the controller logs what it gave to the motor
-    path = log_of(tmp_path / "log.csv", cut, *BOTH)
+    """A wall of 40 N/mm and a motor of 5 N: not told, and the law asked for; with it, sampling."""
+    wall = zw.Wall("40 N/mm")
+    path = cut_off(tmp_path / "log.csv", wall, 5)
     alone = zw.diagnose(path, paddle())
     assert alone.cause is None
     assert any("law that was programmed" in wanted for wanted in alone.record)
     found = zw.diagnose(path, paddle(), law=wall)
     assert found.cause == "sampling"
-    assert (found.change.parameter, found.change.current) == ("stiffness", 12000)
+    assert (found.change.parameter, found.change.current) == ("stiffness", 40000)
     assert "ACTIVE" in found.stated[-1]
+
+
+def test_a_few_rows_between_two_limits_tell_the_law(tmp_path):
+    found = zw.diagnose(cut_off(tmp_path / "log.csv", zw.Wall("12 N/mm"), 5), paddle())
+    assert found.cause == "sampling"
+    assert found.seen.law.stiffness == pytest.approx(12000, rel=1e-6)
+
+
+def test_a_damper_that_shakes_by_a_count_or_two_is_named(tmp_path):
+    """Its estimate is none or one count, for which the motor is too weak."""
+    device = paddle(mass=0.3, damping=2.5, coulomb_friction=0.006, force_limit=3.3)
+    hand = zw.operators.ConstantForce(force=1.55)
+    trace = zw.simulate(device, zw.Wall(2000, 600), hand, 3.0, initial_velocity=0.03)
+    found = zw.diagnose(log_of(tmp_path / "log.csv", trace, *BOTH), device)
+    assert found.seen.counts < 2
+    assert found.cause == "differenced velocity"
+    assert found.seen.law.damping == pytest.approx(600, rel=1e-6)
+    assert found.seen.pulse == pytest.approx((600 * 5e-6) ** 2 / (2 * 0.3))
+    assert any("each count" in line for line in found.evidence)
+
+
+def test_a_part_in_which_the_force_alone_jumps_is_found_and_dated(tmp_path):
+    """Three seconds of twenty at a wall that is on or off, 100 rows a second, while a hand moves slowly."""
+    t = np.arange(2000) * 0.01
+    rng = np.random.default_rng(5)
+    inside = (t > 12) & (t < 15)
+    x = np.where(inside, 0.3, 0.3 - 0.2 * np.sin(0.7 * (t - 12)) ** 2)
+    x = np.round((x + 2e-4 * rng.normal(size=t.size)) / 2e-4) * 2e-4
+    force = np.where(inside, 0.95 * rng.choice([-1, 1], t.size), 0.0)
+    columns = {"time_s": t, "angle_rad": x, "torque_N_m": force}
+    found = zw.diagnose(written(tmp_path / "log.csv", columns))
+    assert found.cause is None
+    assert found.seen.vibration.of_force
+    begin, end = (float(text) for text in re.findall(r"from ([\d.]+) s to ([\d.]+) s", found.claim)[0])
+    assert begin == pytest.approx(12, abs=0.2)
+    assert end == pytest.approx(15, abs=0.2)
+    assert "every sample of the loop" in found.record[0]
 
 
 @pytest.mark.parametrize(

@@ -178,6 +178,8 @@ def _velocity(seen: Evidence) -> Iterator[str]:
         f"B = {shown(seen.law.damping, seen.unit('virtual_damping'), 3)} on {window}, at "
         f"{seen.vibration.frequency * seen.loop_period:.2f} of the sample rate"
     )
+    if seen.pulse:
+        yield f"each count of the encoder gives the mass (B Δ)²/2m = {shown(seen.pulse, 'J', 2)}"
     yield f"the damper gives {_share(seen, 'differenced velocity')}: it pushes"
 
 

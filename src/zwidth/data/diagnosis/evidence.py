@@ -9,7 +9,8 @@ h = sinc(ωT/2) exp(−jωT/2) and the delay τ.  So what goes in comes apart, t
 
     sampling               the spring, through the hold
     delay                  what exp(−jωτ) adds to spring and damper
-    differenced velocity   the damper through its estimate and the hold, where that is positive
+    differenced velocity   the damper through its estimate and the hold, where that is positive; or what the
+                           impulse B Δ of one count gives the mass, where no more are seen at a time
     friction compensation  the force along the motion
     drive damping          what the drive adds by itself
     actuator limit         what a limited rate adds
@@ -134,6 +135,8 @@ class Evidence:
     """Share of the time in which the motor's force changes about as fast as it ever does; None without it."""
     stated: Stated | None = None
     """The law as somebody stated it, beside the force; None where nobody did."""
+    pulse: float = 0.0
+    """[J] (B Δ)²/2m, where the damper reads few counts; else 0."""
     aimed: float | None = None
     """How far the target moves at the frequency, against the motion; None where the file has none."""
 
@@ -207,6 +210,10 @@ def gather(
     held, needed = motion.phasors(force), motion.needed(known)
     F = held * (1 if applied is not None else motion.late(delay))
     aims = (file.x - file.error)[file.steady]
+    resolution = known.resolution or recording.resolution or _count(x)
+    supplied = _terms(fitted, motion, delay, force if commanded is None else commanded)
+    if pulse := _pulse(fitted.law, known, vibration, resolution, file.loop_period):
+        supplied["differenced velocity"] = pulse
     lost = None
     if known.damping is not None:
         viscous = np.pi * motion.omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
@@ -214,12 +221,12 @@ def gather(
     return Evidence(
         vibration=vibration,
         loop_period=file.loop_period,
-        resolution=known.resolution or recording.resolution,
+        resolution=resolution,
         law=fitted.law,
         drive=fitted.drive,
         amplitude=float(abs(X)),
         delay=delay,
-        supplied=_terms(fitted, motion, delay, force if commanded is None else commanded),
+        supplied=supplied,
         total=motion.work(F),
         energy=_along(x, force, 0 if applied is not None else round(delay / period))
         if abs(period - file.loop_period) < 0.01 * period
@@ -237,6 +244,7 @@ def gather(
         by_inside=fitted.by_inside,
         ramps=None if applied is None else drive.ramps(applied),
         stated=fitted.stated,
+        pulse=pulse,
         aimed=None
         if recording.target is None
         else float(abs(phasors(aims, vibration.frequency, period)[0]) / abs(X)),
@@ -414,6 +422,20 @@ def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[
         if between.by_nothing > _ALIKE:
             supplied[least] = added
     return supplied
+
+
+def _count(x: Array) -> float:
+    """[m; rad] between the few places at which all of a motion is; 0 where those are many."""
+    places = np.unique(x)
+    return float(np.diff(places).min()) if 1 < places.size < min(8, x.size / 8) else 0.0
+
+
+def _pulse(found: Law | None, known: Known, vibration: Vibration, resolution: float, period: float) -> float:
+    """[J] (B Δ)²/2m, where the largest speed, π f times the swing, is of at most three counts in a window."""
+    speed = np.pi * vibration.frequency * vibration.swing
+    if found is None or not known.mass or speed * found.window * period > 3 * resolution:
+        return 0.0
+    return (found.damping * resolution) ** 2 / (2 * known.mass)
 
 
 def _standing(x: Array, period: float, cycle: float) -> float:

@@ -92,7 +92,8 @@ def diagnose(
             f"{taken.source} holds a {taken.motion} motion and the device is {device.motion}: "
             "which one is meant?"
         )
-    vibration = find(taken.position, taken.period)
+    force = next(f for f in (taken.commanded, taken.applied) if f is not None)
+    vibration = find(taken.position, taken.period, force)
     if vibration is None:
         return _still(taken)
     found = _named(taken, gather(taken, vibration, device, law), device)
@@ -211,6 +212,8 @@ def doubt(cause: str, seen: Evidence) -> str | None:
             f"a stretch in which the target stands still: in this one it moves at the same "
             f"{shown(vibration.frequency, 'Hz', 3)}, {100 * aimed:.3g} % as far, and the motion is commanded"
         )
+    if vibration.of_force:
+        return "every sample of the loop: the force jumps to and fro, and the motion in these rows does not"
     if vibration.growth < _DIES:
         return "a stretch in which it goes on: in this one it dies out by itself"
     uneven = vibration.frequency_spread > _WANDERS * vibration.frequency
@@ -247,20 +250,13 @@ _PLANNED = 8.0
 _SAMPLES = 20
 
 _OF_ONE_PLACE, _OF_A_LAW = 5e-3, 0.1
-"""Share of the force that the law leaves over where it aims at one place: of 440 faults seven in eight left
-less than the first; of 400 commanded motions one in a hundred.  The second is that of `follows`."""
+"""Share of the force that the law leaves over where it aims at one place; the second is that of `follows`."""
 
 _ALONG_A_SINE = 5e-4
 """The same of a compensation of friction: what moves along a sine takes such a force by its own friction."""
 
-_CUT_OFF = 0.3
-"""Share of the time at a limit from which the little that is seen of a law between may leave more."""
-
 _FEEDS = 0.7
 """Share of the energy that a drive must add to be what feeds a motion, whatever asks for it."""
-
-_MANY_TIMES = 5.0
-"""What friction takes, that a damper gives which shakes between two counts: there its own law is rounded."""
 
 
 def _may_be_commanded(cause: str, seen: Evidence) -> bool:
@@ -269,13 +265,9 @@ def _may_be_commanded(cause: str, seen: Evidence) -> bool:
     in_drive = seen.recorded == "both" and cause in ("drive damping", "delay", "actuator limit")
     if in_drive and seen.supplied[cause] >= _FEEDS * abs(seen.energy):
         return False
-    if cause == "differenced velocity" and seen.lost and seen.supplied[cause] > _MANY_TIMES * seen.lost:
-        return False
     slow = seen.vibration.frequency < min(_PLANNED, 1 / (_SAMPLES * seen.loop_period))
     if slow and seen.aimed is None:
-        cut_off = seen.law is not None and seen.law.limited > _CUT_OFF and left < 0.05
-        most = _ALONG_A_SINE if cause == "friction compensation" else _OF_ONE_PLACE
-        return left > most and not cut_off
+        return left > (_ALONG_A_SINE if cause == "friction compensation" else _OF_ONE_PLACE)
     return left > _OF_A_LAW and not (cause == "structural resonance" or in_drive)
 
 

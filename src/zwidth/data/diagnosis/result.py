@@ -176,7 +176,9 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
         """The answer in one sentence."""
         if self.seen is None:
             return nothing(self.recording.time)
-        at = f"{shown(self.frequency, 'Hz', 3)}"
+        at, time = shown(self.frequency, "Hz", 3), self.recording.time[self.seen.vibration.around]
+        if time.size < self.recording.time.size // 2:
+            at += f" from {time[0]:.4g} s to {time[-1]:.4g} s"
         if self.cause is None:
             first, second, *_ = self.likely
             return f"It shakes at {at}; the data do not say why: {first} or {second}, or something else."

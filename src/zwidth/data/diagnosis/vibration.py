@@ -9,7 +9,8 @@ four pieces.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,8 +28,8 @@ LOWEST = 1.5
 SLOWEST = 0.4
 """[Hz] of a regular one."""
 
-QUICK = 12.0
-"""[Hz] of a buzz in a part of a recording in which a hand moves: that motion is a drift to it."""
+QUICK = (12.0, 6.0, 3.0)
+"""[Hz] at least, of a buzz in a part of a recording in which a hand moves: that motion is a drift to it."""
 
 _IN_A_PART = 97.0
 """Percentile of the size of what shakes in a thirtieth of the recording or more."""
@@ -77,17 +78,20 @@ class Vibration:
     """Logarithm of the amplitude in the last quarter of `around` over that in the first, or twice that of
     its second half where it is more: what dies out goes on to, after a start it stays."""
 
+    of_force: bool = False
+    """Whether it is the force's, and the motion shows none."""
+
     @property
     def angular(self) -> float:
         """[rad/s] ω."""
         return 2 * np.pi * self.frequency
 
 
-def find(position: Array, period: float) -> Vibration | None:
+def find(position: Array, period: float, force: Array | None = None) -> Vibration | None:
     """The stretch that vibrates; None where nothing goes to and fro often enough.
 
-    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and a quick
-    one under the motion of a hand; each must itself be regular.
+    A slow one, a wheel that wobbles, is looked for where no faster one is found that is regular, and quick
+    ones in a part, under the motion of a hand; each must itself be regular; else one of the force, in a part.
     """
     found = _above(LOWEST, position, period)
     if found is None or found.regular < _IRREGULAR or found.frequency < _EDGE * LOWEST:
@@ -103,10 +107,25 @@ def find(position: Array, period: float) -> Vibration | None:
         ):
             return slow
     if found is None or found.regular < _IRREGULAR:
-        quick = _above(QUICK, position, period, _IN_A_PART)
-        if quick is not None and quick.regular > _REGULAR:
-            return quick
+        quick = (_above(lowest, position, period, _IN_A_PART) for lowest in QUICK)
+        most = position.size if found is None else (found.around.stop - found.around.start) // 2
+        jumps = () if force is None else (_reversing(position, force, period, most),)
+        parts = (one for one in quick if one is not None and one.regular > _REGULAR)
+        return next(chain(parts, filter(None, jumps)), found)
     return found
+
+
+def _reversing(position: Array, force: Array, period: float, most: int) -> Vibration | None:
+    """The longest stretch in which a force jumps to and fro over half of its range, whatever moves there."""
+    jumps = np.diff(force)
+    at = np.flatnonzero(np.abs(jumps) > 0.5 * np.ptp(force))
+    back = at[1:][jumps[at[1:]] * jumps[at[:-1]] < 0]
+    longest = max(np.split(back, np.flatnonzero(np.diff(back) * period > _BLOCK) + 1), key=len)
+    rows = slice(int(longest[:1].sum()), int(longest[-1:].sum()) + 2)
+    if longest.size < 2 * FEWEST_CYCLES or rows.stop - rows.start > most or not np.ptp(position[rows]):
+        return None
+    frequency = peak(_without_line(force[rows]), period)
+    return replace(_measured(position, rows, rows, frequency, period), of_force=True)
 
 
 def nothing(time: Array) -> str:
@@ -139,6 +158,13 @@ def _above(lowest: float, position: Array, period: float, large: float = 75.0) -
         return None
     around = rows
     rows, frequency = _steadiest(position, rows, frequency, period, lowest)
+    return _measured(position, rows, around, frequency, period, lowest)
+
+
+def _measured(
+    position: Array, rows: slice, around: slice, frequency: float, period: float, lowest: float = LOWEST
+) -> Vibration:
+    """What is in these rows at that frequency."""
     y = _without_line(position[rows])
     pieces = [peak(_without_line(part), period, lowest) for part in np.array_split(y, 4)]
     spread = max(float(np.std(pieces)) / 2, 0.02 / (y.size * period))
