@@ -31,6 +31,8 @@ SAID: list[tuple[dict[str, Any], str]] = [
     ({"largest_force": 3.0}, "forces of the wall up to 3 N"),
     ({"largest_force": 3.0, "largest_moment": 0.2}, "and moments up to 0.2 N·m"),
     ({"transmission": "rigid"}, "motor, encoder and hand move as one"),
+    ({"transmission": "any"}, "any stiffness between motor and hand"),
+    ({"transmission": "as given"}, "a transmission of the numbers given"),
     ({"torque": "follows the arm"}, "torque follows the arm"),
     ({"torque": "follows the readings"}, "torque follows the encoders"),
     ({"torque": "held"}, "torque held over a sample"),
