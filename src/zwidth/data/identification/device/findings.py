@@ -10,6 +10,7 @@ from typing import NamedTuple
 from zwidth.data.identification.device.choice import SURE
 from zwidth.data.identification.device.estimate import Directions, Estimate, perhaps_none, unit_of
 from zwidth.data.identification.device.fit import Found
+from zwidth.data.identification.device.two_masses import TwoMasses
 from zwidth.data.logs import Finding, Log
 from zwidth.data.logs.table import Block
 from zwidth.errors import InputError
@@ -52,6 +53,17 @@ def findings(
             text = f"{what} is seen and fitted: {estimates[name]}{until}"
             yield Finding(kind=_KINDS.get(name, name.replace("_", " ")), text=text)
     yield from _bend(found, names, slopes, speed)
+
+
+def moves_apart(cable: TwoMasses) -> Finding:
+    """Where the log surely shows two masses."""
+    share = cable.damping.value / (cable.motor["damping"].value + cable.between["handle_damping"].value)
+    text = (
+        f"the handle moves on a cable, a belt or a gear: nobody at the handle, the two swing at "
+        f"{cable.resonance:.3g} Hz; walls rest on what the motor feels whatever the hand does, "
+        f"{100 * share:.0f} % of the damping of both sides"
+    )
+    return Finding(kind="two masses", text=text)
 
 
 def _bend(found: Found, names: tuple[str, ...], slopes: Directions, speed: float) -> Iterable[Finding]:
