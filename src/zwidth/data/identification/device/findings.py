@@ -56,7 +56,14 @@ def findings(
 
 
 def moves_apart(cable: TwoMasses) -> Finding:
-    """Where the log surely shows two masses."""
+    """Where the log surely shows two masses, or that one does not explain it."""
+    if not cable.explain:
+        return Finding(
+            kind="wrong model",
+            text="one mass is the wrong model: something gives way between motor and handle, or more than "
+            "friction and a constant force acts; two masses on a spring do not explain the log either, to "
+            "the encoder's steps: log once more with nobody at the handle, the motor shaking it harder",
+        )
     share = cable.damping.value / (cable.motor["damping"].value + cable.between["handle_damping"].value)
     text = (
         f"the handle moves on a cable, a belt or a gear: nobody at the handle, the two swing at "
@@ -95,7 +102,8 @@ def _model(
                 kind="wrong model",
                 text="a mass and a damper are the wrong model: Coulomb friction of "
                 f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T reads {limits[0]} "
-                f"instead of {limits[1]}: walls between the two would be called passive and are not",
+                f"instead of {limits[1]}: walls between the two would be called passive and are not; identify "
+                'with model="Coulomb and viscous"',
             )
     elif estimates["coulomb_friction"].beyond(SURE):
         yield Finding(

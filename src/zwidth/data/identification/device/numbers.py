@@ -101,10 +101,8 @@ class IdentifiedNumbers:
             Further arguments of `Device`, such as name or force_limit.
         """
         if self.shows("wrong model"):
-            raise InputError(
-                "these numbers are of a mass and a damper, and Coulomb friction is seen: no device has them, "
-                'and walls that they allow take energy out; identify with model="Coulomb and viscous"'
-            )
+            why = next(str(finding) for finding in self.findings if finding.kind == "wrong model")
+            raise InputError(f"{why}; no device has them, and walls that they allow take energy out")
         given: dict[str, Any] = {
             "sample_period": self.sample_period,
             "resolution": self.resolution,

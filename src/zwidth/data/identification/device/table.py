@@ -367,6 +367,8 @@ def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) ->
 def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     """Which number limits the stiffest wall, and how to know it better."""
     if identified.shows("wrong model"):
+        if identified.cable is not None:
+            return ("log once more, nobody at the handle, the motor shaking it harder, and quicker",)
         return ("fit Coulomb friction too: these numbers are of another model than the device",)
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])

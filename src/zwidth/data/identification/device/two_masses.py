@@ -46,10 +46,10 @@ _LIKE = {name: name.removeprefix("handle_") for name in NAMES} | {"inside": "dam
 """Whose unit is meant."""
 
 ONE = 4
-"""How many of them one mass has."""
+"""How many of them one mass has, and numbers of a state of two."""
 
-STEPS = 4
-"""Of a sample: friction strikes at each."""
+STEPS, FINE = 4, 12
+"""Of a sample, friction striking at each: while the numbers are looked for, and at the end."""
 
 FIRST, SHORT, LONG = 24, 48, 160
 """Samples of a window: short ones first, in which no start is a cycle of the swing off."""
@@ -60,7 +60,7 @@ FEW = 150
 MOST = 60_000
 """Samples that are used."""
 
-STARTS = tuple(40.0 * 2 ** (fifth / 5) for fifth in range(31))
+STARTS = tuple(40.0 * 2 ** (eighth / 8) for eighth in range(49))
 """Frequencies at which the two may swing against each other [Hz]."""
 
 LOST = 9
@@ -84,6 +84,8 @@ class TwoMasses:
     """By name of a parameter of `Device`."""
     between: Mapping[str, Estimate]
     """By name of a parameter of `Transmission`."""
+    explain: bool
+    """True where they leave no more than the encoder's steps."""
 
     def relied_on(self, motor: float, inside: float, handle: float) -> float:
         """b₁ + c b₂/(c + b₂) ≥ 0, which the motor feels whatever the hand does [N·s/m; N·m·s/rad]."""
@@ -132,13 +134,12 @@ def _swing(
     flow: Array, push: Array, strikes: Array, force: Array, late: int, steps: int, begin: Array, found: Array
 ) -> None:
     """The motor's position at each sample of each window, from the state at its beginning."""
-    before = force.shape[1] - found.shape[1]
     for w in range(begin.shape[0]):
         x, v, y, u = begin[w, 0], begin[w, 1], begin[w, 2], begin[w, 3]
         for i in range(found.shape[1]):
             found[w, i] = x
             for j in range(steps):
-                f = force[w, before + i] if j >= late else force[w, before + i - 1]
+                f = force[w, i + 1] if j >= late else force[w, i]
                 a = flow[0, 0] * x + flow[0, 1] * v + flow[0, 2] * y + flow[0, 3] * u + push[0] * f
                 b = flow[1, 0] * x + flow[1, 1] * v + flow[1, 2] * y + flow[1, 3] * u + push[1] * f
                 c = flow[2, 0] * x + flow[2, 1] * v + flow[2, 2] * y + flow[2, 3] * u + push[2] * f
@@ -155,7 +156,8 @@ class _Fit:
     begin: Array
     left: Array
     """Sum of squares that is left of each window [m²; rad²]."""
-    covariance: Array | None = None
+    errors: Array | None = None
+    """Of the numbers, or of their logarithms: by the scatter of the windows, no less than by white noise."""
 
     @property
     def found(self) -> Array:
@@ -177,8 +179,9 @@ class _Windows:
     force: Array
     """Those of the actuator, from some samples before [N; N·m]."""
     late: int
-    """Steps by which the force comes after its sample."""
+    """Steps by which the force comes after its sample, less than a sample."""
     period: float
+    steps: int
 
     def first(self, count: int) -> _Windows:
         return replace(self, read=self.read[:count], force=self.force[:count])
@@ -186,7 +189,7 @@ class _Windows:
     def swing(self, values: Array, begin: Array) -> Array:
         """Positions of the motor, of one mass or of two."""
         m, b, f, offset = values[:ONE]
-        rates, strikes, step = np.zeros((5, 5)), np.array([f / m, 0.0]), self.period / STEPS
+        rates, strikes, step = np.zeros((5, 5)), np.array([f / m, 0.0]), self.period / self.steps
         rates[0, 1], rates[1, 1], rates[1, 4] = 1.0, -b / m, -1 / m
         if values.size > ONE:
             other, damping, friction, k, c = values[ONE:]
@@ -197,7 +200,7 @@ class _Windows:
         flow = _exponential(rates * step)
         found = np.empty(self.read.shape)
         parts = (np.ascontiguousarray(part) for part in (flow[:4, :4], flow[:4, 4]))
-        _swing(*parts, strikes * step, self.force + offset, self.late, STEPS, begin, found)
+        _swing(*parts, strikes * step, self.force + offset, self.late, self.steps, begin, found)
         return found
 
     def starting(self, values: Array) -> _Fit:
@@ -254,9 +257,10 @@ class _Windows:
                 break
         assert parts is not None
         matrix = np.linalg.pinv(parts[0].sum(axis=0))
-        count = len(fit.begin)
+        count, spare = len(fit.begin), self.read.shape[1] - ONE
         scatter = parts[1].T @ parts[1] * count / max(count - 1, 1)
-        return replace(fit, covariance=matrix @ scatter @ matrix)
+        white = np.diag(matrix) * float(fit.left[fit.found].mean()) / spare
+        return replace(fit, errors=np.sqrt(np.maximum(np.diag(matrix @ scatter @ matrix), white)))
 
     def _normal(self, fit: _Fit) -> tuple[Array, Array]:
         """Normal equations of each window, its beginning left free."""
@@ -300,20 +304,20 @@ def _stepped(values: Array, step: Array) -> Array:
     return np.where(chosen, values * np.exp(np.clip(np.where(chosen, step, 0.0), -1, 1)), values + step)
 
 
-def _windows(log: Log, samples: int, delay: float) -> _Windows:
-    late = round(delay * STEPS)
-    before = -(-late // STEPS)
+def _windows(log: Log, samples: int, delay: float, steps: int = STEPS) -> _Windows:
+    whole, late = divmod(round(delay * steps), steps)
     read, force, seen = [], [], 0
     for piece in pieces(log):
         x, f = piece.block.position, piece.block.actuator_force
-        for at in range(before, x.size - samples + 1, samples):
+        assert f is not None
+        for at in range(whole + 1, x.size - samples + 1, samples):
             if np.ptp(x[at : at + samples]) >= STILL * log.resolution:
                 read.append(x[at : at + samples])
-                force.append(f[at - before : at + samples])
+                force.append(f[at - whole - 1 : at - whole + samples])
         seen += x.size
         if seen >= MOST:
             break
-    return _Windows(np.array(read), np.array(force), late, log.sample_period)
+    return _Windows(np.array(read), np.array(force), late, log.sample_period, steps)
 
 
 def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | None:
@@ -321,7 +325,7 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
 
     `one` has mass, damping and Coulomb friction of one mass, the delay is in samples.
     """
-    short, long = (_windows(log, samples, delay) for samples in (SHORT, LONG))
+    short, long = (_windows(log, *how) for how in ((SHORT, delay), (LONG, delay, FINE)))
     if min(len(short.read), len(long.read)) < FEWEST:
         return None
     alone = short.better(short.starting(np.array([*(one[name] for name in NAMES[: ONE - 1]), 0.0])), 6)
@@ -332,15 +336,15 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
     for frequency in STARTS:
         start = np.array([m, b, f, offset, m, b, f, (2 * pi * frequency) ** 2 * m / 2, b / 4])
         tried.append(few.better(few.starting(start), 3))
-    best = min(tried, key=lambda fit: fit.cost)
-    two = short.better(short.starting(best.values), 12)
-    gain = ((alone.left - two.left) / _per_reading(two, SHORT - 4))[two.found]
+    tried.sort(key=lambda fit: fit.cost)
+    two = min((short.better(short.starting(fit.values), 12) for fit in tried[:2]), key=lambda fit: fit.cost)
+    gain = ((alone.left - two.left) / _per_reading(two, SHORT - ONE))[two.found]
     reach = student(SURE, gain.size - 1) * float(gain.std()) * sqrt(gain.size)
     if gain.sum() <= max(chdtri(len(NAMES) - ONE, 1 - SURE), reach):
         return None
     fit = long.better(long.starting(two.values), 12)
-    assert fit.covariance is not None
-    errors = np.sqrt(np.diag(fit.covariance)) * np.where(_LOGARITHM, fit.values, 1.0)
+    assert fit.errors is not None
+    errors = fit.errors * np.where(_LOGARITHM, fit.values, 1.0)
     degrees = int(fit.found.sum()) - len(NAMES)
     found = {
         name: Estimate(float(value), float(error), 0.0, degrees, unit_of(_LIKE[name], log.motion))
@@ -348,7 +352,11 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
         if name != "offset"
     }
     motor = {name: found.pop(name) for name in NAMES[: ONE - 1]}
-    return TwoMasses(motor, {("damping" if name == "inside" else name): found[name] for name in found})
+    return TwoMasses(
+        motor,
+        {("damping" if name == "inside" else name): found[name] for name in found},
+        not log.resolution or _per_reading(fit, LONG - ONE) <= EXPLAINED * log.resolution**2 / 12,
+    )
 
 
 def _per_reading(fit: _Fit, spare: int) -> float:
