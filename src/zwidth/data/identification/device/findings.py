@@ -102,8 +102,8 @@ def _model(
                 kind="wrong model",
                 text="a mass and a damper are the wrong model: Coulomb friction of "
                 f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T reads {limits[0]} "
-                f"instead of {limits[1]}: walls between the two would be called passive and are not; identify "
-                'with model="Coulomb and viscous"',
+                f"instead of {limits[1]}: walls between the two would be called passive and are not; "
+                'identify with model="Coulomb and viscous"',
             )
     elif estimates["coulomb_friction"].beyond(SURE):
         yield Finding(
