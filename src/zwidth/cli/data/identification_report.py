@@ -70,7 +70,9 @@ def _headline(found: Identification) -> Padding:
 
 def _claim(found: Identification) -> str:
     if found.identified.shows("wrong model"):
-        return "The log shows more than was fitted: these numbers allow no wall."
+        if found.identified.cable is not None:
+            return "One mass does not explain the log, nor do two: these numbers allow no wall."
+        return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
     device = found.identified.device(found.confidence, **found.others)
     device = device if device.transmission is None else seen_at_motor(device)
     stiffest = check_by_closed_forms(device, Wall(stiffness=1)).max_stiffness
