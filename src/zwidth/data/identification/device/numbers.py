@@ -116,9 +116,13 @@ class IdentifiedNumbers:
         given |= self._friction(confidence)
         given["friction_speed"] = self.speed
         if self.cable is not None:
-            between = {name: _parameter(each, confidence) for name, each in self.cable.between.items()}
-            unknown = [n for n in ("stiffness", "handle_mass") if ends(as_parameter(between[n]))[0] <= 0]
-            given["transmission"] = Transmission(**{n: v for n, v in between.items() if n not in unknown})
+            between: dict[str, Any] = {
+                name: _parameter(each, confidence) for name, each in self.cable.between.items()
+            }
+            for name in ("stiffness", "handle_mass"):
+                if ends(as_parameter(between[name]))[0] <= 0:
+                    del between[name]  # unknown: as with the mass
+            given["transmission"] = Transmission(**between)
         if "mass" in given and ends(as_parameter(given["mass"]))[0] <= 0:
             del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})

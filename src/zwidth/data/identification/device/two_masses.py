@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from math import pi, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import chdtri
 
 from zwidth.data.identification.device.choice import SURE
@@ -65,6 +66,9 @@ STARTS = tuple(40.0 * 2 ** (eighth / 8) for eighth in range(49))
 
 LOST = 9
 """Times the median of what is left of a window, beyond which its beginning was not found."""
+
+SMALL = 1e-4
+"""Part of each number, and of the way of a window, by which slopes are taken."""
 
 STILL = 12
 """Counts that a window moves at least."""
@@ -160,7 +164,7 @@ class _Fit:
     """Of the numbers, or of their logarithms: by the scatter of the windows, no less than by white noise."""
 
     @property
-    def found(self) -> Array:
+    def found(self) -> NDArray[np.bool_]:
         """Windows whose beginning was found; of some, where the motion turns, it is not."""
         return self.left <= LOST * np.median(self.left)
 
@@ -199,8 +203,8 @@ class _Windows:
             strikes[1] = friction / other
         flow = _exponential(rates * step)
         found = np.empty(self.read.shape)
-        parts = (np.ascontiguousarray(part) for part in (flow[:4, :4], flow[:4, 4]))
-        _swing(*parts, strikes * step, self.force + offset, self.late, self.steps, begin, found)
+        within, push = (np.ascontiguousarray(part) for part in (flow[:4, :4], flow[:4, 4]))
+        _swing(within, push, strikes * step, self.force + offset, self.late, self.steps, begin, found)
         return found
 
     def starting(self, values: Array) -> _Fit:
@@ -211,26 +215,26 @@ class _Windows:
 
     def begun(self, fit: _Fit, rounds: int) -> _Fit:
         """The same numbers with better beginnings, each window for itself."""
-        begin, best, left = fit.begin, fit.begin, np.full(len(fit.begin), np.inf)
-        for _ in range(rounds):
-            rest = self.read - self.swing(fit.values, begin)
-            squares = (rest**2).sum(axis=1)
-            better = squares < left
-            best, left = np.where(better[:, None], begin, best), np.where(better, squares, left)
+        begin, best, left, rest = fit.begin, fit.begin, np.full(len(fit.begin), np.inf), self.read
+        for last in range(rounds + 1):
+            found = self.read - self.swing(fit.values, begin)
+            better = (found**2).sum(axis=1) < left
+            best, rest = np.where(better[:, None], begin, best), np.where(better[:, None], found, rest)
+            left = (rest**2).sum(axis=1)
+            if last == rounds:
+                break
             moved = self.moved(fit.values, best)
-            rest = self.read - self.swing(fit.values, best)
             change = _solved(moved, np.einsum("wij,wi->wj", moved, rest))
             begin = best.copy()
             begin[:, : moved.shape[2]] += np.where(better[:, None], change, change / 4)
-        squares = ((self.read - self.swing(fit.values, begin)) ** 2).sum(axis=1)
-        better = squares < left
-        best, left = np.where(better[:, None], begin, best), np.where(better, squares, left)
         return _Fit(fit.values, best, left)
 
     def moved(self, values: Array, begin: Array) -> Array:
         """By how much positions change with the state at the beginning."""
         base, columns = self.swing(values, begin), []
-        for k, size in enumerate((1e-5, 1e-3, 1e-5, 1e-3) if values.size > ONE else (1e-5, 1e-3)):
+        way = 10 * SMALL * float(np.median(np.ptp(self.read, axis=1)))
+        speed = way / (self.read.shape[1] * self.period)
+        for k, size in enumerate((way, speed, way, speed)[: 4 if values.size > ONE else 2]):
             other = begin.copy()
             other[:, k] += size
             columns.append((self.swing(values, other) - base) / size)
@@ -256,7 +260,9 @@ class _Windows:
             if gain < 1e-5:
                 break
         assert parts is not None
-        matrix = np.linalg.pinv(parts[0].sum(axis=0))
+        matrix = parts[0].sum(axis=0)
+        size = np.sqrt(np.diag(matrix)) + 1e-300
+        matrix = np.linalg.pinv(matrix / np.outer(size, size)) / np.outer(size, size)
         count, spare = len(fit.begin), self.read.shape[1] - ONE
         scatter = parts[1].T @ parts[1] * count / max(count - 1, 1)
         white = np.diag(matrix) * float(fit.left[fit.found].mean()) / spare
@@ -265,9 +271,11 @@ class _Windows:
     def _normal(self, fit: _Fit) -> tuple[Array, Array]:
         """Normal equations of each window, its beginning left free."""
         base, columns = self.swing(fit.values, fit.begin), []
-        for k in range(fit.values.size):
+        damping, friction = (float(np.abs(fit.values[at::ONE]).sum()) for at in (1, 2))
+        sizes = (1, damping, friction, friction, 1, damping, friction, 1, damping)[: fit.values.size]
+        for k, size in enumerate(sizes):
             step = np.zeros(fit.values.size)
-            step[k] = 1e-4 if _LOGARITHM[k] else 1e-5
+            step[k] = SMALL * size
             columns.append((self.swing(_stepped(fit.values, step), fit.begin) - base) / step[k])
         slopes = np.stack(columns, axis=2) * fit.found[:, None, None]
         moved, rest = self.moved(fit.values, fit.begin), self.read - base
@@ -295,13 +303,15 @@ def _solved(columns: Array, right: Array) -> Array:
     size = np.sqrt(np.einsum("wjj->wj", matrix)) + 1e-300
     scaled = matrix / size[:, :, None] / size[:, None, :] + 1e-10 * np.eye(size.shape[1])
     right = right[:, :, None] if right.ndim == 2 else right
-    found = np.linalg.solve(scaled, right / size[:, :, None]) / size[:, :, None]
+    found: Array = np.linalg.solve(scaled, right / size[:, :, None]) / size[:, :, None]
     return found[:, :, 0] if found.shape[2] == 1 else found
 
 
 def _stepped(values: Array, step: Array) -> Array:
     chosen = _LOGARITHM[: values.size]
-    return np.where(chosen, values * np.exp(np.clip(np.where(chosen, step, 0.0), -1, 1)), values + step)
+    grown = values * np.exp(np.clip(np.where(chosen, step, 0.0), -1, 1))
+    found: Array = np.where(chosen, grown, values + step)
+    return found
 
 
 def _windows(log: Log, samples: int, delay: float, steps: int = STEPS) -> _Windows:
@@ -338,7 +348,8 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
         tried.append(few.better(few.starting(start), 3))
     tried.sort(key=lambda fit: fit.cost)
     two = min((short.better(short.starting(fit.values), 12) for fit in tried[:2]), key=lambda fit: fit.cost)
-    gain = ((alone.left - two.left) / _per_reading(two, SHORT - ONE))[two.found]
+    kept = alone.found & two.found
+    gain = ((alone.left - two.left) / _per_reading(two, SHORT - ONE))[kept]
     reach = student(SURE, gain.size - 1) * float(gain.std()) * sqrt(gain.size)
     if gain.sum() <= max(chdtri(len(NAMES) - ONE, 1 - SURE), reach):
         return None
