@@ -48,8 +48,8 @@ NAMES = {
 }
 
 BOTH_SIDES = (
-    "m, b and f_c are the sum of both sides of a cable, belt or gear between motor and hand; where the motor "
-    "swings on it only its own side pays, which a log shows in which the motor shakes, nobody at the handle"
+    "m, b and f_c are the sum of both sides of a cable, belt or gear; where the motor swings on it only its "
+    "own side pays (a shaken log shows it)"
 )
 """What is taken for granted of every device: motor, encoder and hand move as one."""
 
