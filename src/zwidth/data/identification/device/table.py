@@ -104,7 +104,7 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
     if identified.cable is not None:
         for key, estimate in identified.cable.between.items():
             low, high = estimate.interval(confidence)
-            symbol, name = _BETWEEN[key].quantity.symbol, key.replace("_", " ")
+            symbol, name = _BETWEEN[key].quantity.symbol, key.replace("_", " ").replace("coulomb", "Coulomb")
             name = name if key.startswith("handle") else f"{name} of the cable"
             table.append(_row(symbol, name, estimate.value, low, high, estimate.unit))
     stiffness = GLOSSARY["stiffness"].unit_for(identified.motion)

@@ -64,7 +64,7 @@ MOST = 60_000
 STARTS = tuple(40.0 * 2 ** (eighth / 8) for eighth in range(49))
 """Frequencies at which the two may swing against each other [Hz]."""
 
-LOST = 9
+LOST = 2
 """Times the median of what is left of a window, beyond which its beginning was not found."""
 
 SMALL = 1e-4
@@ -76,8 +76,8 @@ STILL = 12
 FEWEST = 24
 """Windows below which nothing is concluded."""
 
-EXPLAINED = 1.1
-"""Times the variance of an encoder's step that one mass may leave: more is asked of two."""
+EXPLAINED, CLOSELY = 1.1, 1.05
+"""Times the variance of an encoder's step that one mass may leave before two are tried, and two in all."""
 
 
 @dataclass(frozen=True)
@@ -240,9 +240,9 @@ class _Windows:
             columns.append((self.swing(values, other) - base) / size)
         return np.stack(columns, axis=2)
 
-    def better(self, fit: _Fit, rounds: int) -> _Fit:
+    def better(self, fit: _Fit, rounds: int, enough: float = 1e-5) -> _Fit:
         """Gauss and Newton, beginnings and all, as long as it becomes better."""
-        damp, parts = 1e-3, None
+        damp, parts = 100 * enough, None
         for _ in range(rounds):
             parts = self._normal(fit)
             matrix, right = parts[0].sum(axis=0), parts[1].sum(axis=0)
@@ -250,14 +250,14 @@ class _Windows:
             for _ in range(6):
                 scaled = matrix / np.outer(size, size) + damp * np.eye(size.size)
                 step = np.linalg.solve(scaled, right / size) / size
-                found = self.begun(replace(fit, values=_stepped(fit.values, step)), 2)
+                found = self.begun(replace(fit, values=_stepped(fit.values, step)), 2 if enough > 1e-6 else 4)
                 if found.cost < fit.cost:
                     break
-                damp *= 8
+                damp *= 10
             else:
                 break
-            gain, fit, damp = 1 - found.cost / fit.cost, found, max(damp / 10, 1e-9)
-            if gain < 1e-5:
+            gain, fit, damp = 1 - found.cost / fit.cost, found, max(damp / 100, 1e-12)
+            if gain < enough:
                 break
         assert parts is not None
         matrix = parts[0].sum(axis=0)
@@ -353,7 +353,7 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
     reach = student(SURE, gain.size - 1) * float(gain.std()) * sqrt(gain.size)
     if gain.sum() <= max(chdtri(len(NAMES) - ONE, 1 - SURE), reach):
         return None
-    fit = long.better(long.starting(two.values), 12)
+    fit = long.better(long.starting(two.values), 24, 1e-8)
     assert fit.errors is not None
     errors = fit.errors * np.where(_LOGARITHM, fit.values, 1.0)
     degrees = int(fit.found.sum()) - len(NAMES)
@@ -366,7 +366,7 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
     return TwoMasses(
         motor,
         {("damping" if name == "inside" else name): found[name] for name in found},
-        not log.resolution or _per_reading(fit, LONG - ONE) <= EXPLAINED * log.resolution**2 / 12,
+        not log.resolution or _per_reading(fit, LONG - ONE) <= CLOSELY * log.resolution**2 / 12,
     )
 
 
