@@ -74,7 +74,7 @@ def identify_log(
         raise InputError(too_little(log))
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     shaken = log.channels == ("actuator_force",) and model == "Coulomb and viscous" and mass is None
-    cable = two_masses(log, {n: e.value for n, e in estimates.items()}, late) if shaken else None
+    cable = two_masses(log, estimates, late) if shaken else None
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates if cable is None else {**estimates, **cable.motor},

@@ -161,7 +161,11 @@ class IdentifiedNumbers:
     def _friction(self, confidence: float | None) -> dict[str, float | Interval]:
         """Damping and, where it was fitted, Coulomb friction: best guesses, or intervals."""
         if self.cable is not None:
-            return {n: _parameter(self.estimates[n], confidence) for n in ("damping", "coulomb_friction")}
+            own = {n: _parameter(self.estimates[n], confidence) for n in ("damping", "coulomb_friction")}
+            if confidence is not None:
+                ends_ = ends(as_parameter(own["damping"]))
+                own["damping"] = Interval(min(float(ends_[0]), self.least_damping(confidence)), ends_[1])
+            return own
         dry = "coulomb_friction" in self.estimates
         if confidence is None:
             if self.shows("bent friction"):

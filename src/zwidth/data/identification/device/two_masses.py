@@ -88,6 +88,8 @@ class TwoMasses:
     """By name of a parameter of `Device`."""
     between: Mapping[str, Estimate]
     """By name of a parameter of `Transmission`."""
+    both: Estimate
+    """Damping of both sides, by one mass [N·s/m; N·m·s/rad]: that of one is no more."""
     explain: bool
     """True where they leave no more than the encoder's steps."""
 
@@ -105,8 +107,9 @@ class TwoMasses:
         return self.motor["damping"]._replace(value=self.relied_on(b, c, h), error=error)
 
     def least_damping(self, confidence: float) -> float:
-        """The same of the low ends of all three."""
-        return self.relied_on(*(each.interval(confidence)[0] for each in self._three))
+        """The same of the low ends of all three, and no more than both sides have."""
+        least = self.relied_on(*(each.interval(confidence)[0] for each in self._three))
+        return min(least, max(self.both.interval(confidence)[0], 0.0))
 
     @property
     def _three(self) -> tuple[Estimate, Estimate, Estimate]:
@@ -330,15 +333,15 @@ def _windows(log: Log, samples: int, delay: float, steps: int = STEPS) -> _Windo
     return _Windows(np.array(read), np.array(force), late, log.sample_period, steps)
 
 
-def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | None:
+def two_masses(log: Log, one: Mapping[str, Estimate], delay: float) -> TwoMasses | None:
     """Both sides, where a log surely shows two: of the actuator's force alone, nobody at the handle.
 
-    `one` has mass, damping and Coulomb friction of one mass, the delay is in samples.
+    `one` has mass, damping and Coulomb friction of one mass; the delay is in samples.
     """
     short, long = (_windows(log, *how) for how in ((SHORT, delay), (LONG, delay, FINE)))
     if min(len(short.read), len(long.read)) < FEWEST:
         return None
-    alone = short.better(short.starting(np.array([*(one[name] for name in NAMES[: ONE - 1]), 0.0])), 6)
+    alone = short.better(short.starting(np.array([*(one[name].value for name in NAMES[: ONE - 1]), 0.0])), 6)
     if log.resolution and _per_reading(alone, SHORT - 2) <= EXPLAINED * log.resolution**2 / 12:
         return None
     few, tried = _windows(log, FIRST, delay).first(FEW), []
@@ -366,6 +369,7 @@ def two_masses(log: Log, one: Mapping[str, float], delay: float) -> TwoMasses | 
     return TwoMasses(
         motor,
         {("damping" if name == "inside" else name): found[name] for name in found},
+        one["damping"],
         not log.resolution or _per_reading(fit, LONG - ONE) <= CLOSELY * log.resolution**2 / 12,
     )
 
