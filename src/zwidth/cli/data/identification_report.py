@@ -13,8 +13,8 @@ from zwidth.cli.loop_lines import environment_line
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section
 from zwidth.data.identification.device.estimate import MOST_CONFIDENCE
 from zwidth.data.identification.device.table import (
-    BOTH_SIDES,
     advice,
+    assumed,
     percent,
     perhaps_zero,
     rows,
@@ -23,13 +23,14 @@ from zwidth.data.identification.device.table import (
 from zwidth.model.environment import Wall
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.scope import TOLD
+from zwidth.passivity.transmission import seen_at_motor
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import shown, shown_at_most
 
 _SHOWN = 0.95
 """Confidence of the intervals in the table."""
 
-_WARNINGS = ("wrong model", "bent friction", "no damping", "no coulomb friction")
+_WARNINGS = ("wrong model", "two masses", "bent friction", "no damping", "no coulomb friction")
 """Kinds of findings that are coloured."""
 
 
@@ -69,8 +70,11 @@ def _headline(found: Identification) -> Padding:
 
 def _claim(found: Identification) -> str:
     if found.identified.shows("wrong model"):
+        if found.identified.cable is not None:
+            return "One mass does not explain the log, nor do two: these numbers allow no wall."
         return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
     device = found.identified.device(found.confidence, **found.others)
+    device = device if device.transmission is None else seen_at_motor(device)
     stiffest = check_by_closed_forms(device, Wall(stiffness=1)).max_stiffness
     confidence = f"at {percent(found.confidence)} confidence"
     if not stiffest:
@@ -120,7 +124,7 @@ def _numbers(found: Identification) -> Iterator[Table | Text]:
     one = found.identified
     why = perhaps_zero(one, found.confidence) | perhaps_zero(one, _SHOWN)
     zero = "".join(f"{name} may be 0 for a wall: {text}\n" for name, text in why.items())
-    yield Text.assemble((zero, "yellow"), (BOTH_SIDES, "dim"))
+    yield Text.assemble((zero, "yellow"), (assumed(one), "dim"))
     force = "N*m" if one.motion == "rotary" else "N"
     yield Text(
         f"r² = {one.explained:.4f}, noise {shown(one.force_noise, force, 3)} per sample, "

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from zwidth.data.identification.device.choice import SURE
 from zwidth.data.identification.device.estimate import Directions, Estimate, perhaps_none, unit_of
 from zwidth.data.identification.device.fit import Found
+from zwidth.data.identification.device.two_masses import TwoMasses
 from zwidth.data.logs import Finding, Log
 from zwidth.data.logs.table import Block
 from zwidth.errors import InputError
@@ -54,6 +55,24 @@ def findings(
     yield from _bend(found, names, slopes, speed)
 
 
+def moves_apart(cable: TwoMasses) -> Finding:
+    """Where the log surely shows two masses, or that one does not explain it."""
+    if not cable.explain:
+        return Finding(
+            kind="wrong model",
+            text="one mass is the wrong model: something gives way between motor and handle, or more than "
+            "friction and a constant force acts; two masses on a spring do not explain the log either, to "
+            "the encoder's steps: log once more with nobody at the handle, the motor shaking it harder",
+        )
+    share = cable.damping.value / (cable.motor["damping"].value + cable.between["handle_damping"].value)
+    text = (
+        f"the handle moves on a cable, a belt or a gear: nobody at the handle, the two swing at "
+        f"{cable.resonance:.3g} Hz; walls rest on what the motor feels whatever the hand does, "
+        f"{100 * share:.0f} % of the damping of both sides"
+    )
+    return Finding(kind="two masses", text=text)
+
+
 def _bend(found: Found, names: tuple[str, ...], slopes: Directions, speed: float) -> Iterable[Finding]:
     """Friction whose slope changes with speed."""
     if "coulomb_friction" not in names:
@@ -83,7 +102,8 @@ def _model(
                 kind="wrong model",
                 text="a mass and a damper are the wrong model: Coulomb friction of "
                 f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T reads {limits[0]} "
-                f"instead of {limits[1]}: walls between the two would be called passive and are not",
+                f"instead of {limits[1]}: walls between the two would be called passive and are not; "
+                'identify with model="Coulomb and viscous"',
             )
     elif estimates["coulomb_friction"].beyond(SURE):
         yield Finding(

@@ -22,11 +22,12 @@ import numpy as np
 from zwidth.data.identification.device.choice import Zero, choose, too_little
 from zwidth.data.identification.device.curve import fastest
 from zwidth.data.identification.device.estimate import offset
-from zwidth.data.identification.device.findings import findings, refuse_impossible
+from zwidth.data.identification.device.findings import findings, moves_apart, refuse_impossible
 from zwidth.data.identification.device.fit import Found, gather
 from zwidth.data.identification.device.numbers import IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES
 from zwidth.data.identification.device.table import report, source_name
+from zwidth.data.identification.device.two_masses import two_masses
 from zwidth.data.logs import Log, read_log
 from zwidth.errors import InputError
 from zwidth.lazy import above
@@ -72,9 +73,12 @@ def identify_log(
     if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log))
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
+    shaken = log.channels == ("actuator_force",) and model == "Coulomb and viscous" and mass is None
+    cable = two_masses(log, estimates, late) if shaken else None
     weights = found.shape.value / found.shape.piece
     return Identified(
-        estimates=estimates,
+        estimates=estimates if cable is None else {**estimates, **cable.motor},
+        cable=cable,
         directions=directions,
         fastest=quickest,
         slopes=slopes,
@@ -92,6 +96,7 @@ def identify_log(
         pulses=found.moments.pulses,
         findings=(
             *log.findings,
+            *(() if cable is None else (moves_apart(cable),)),
             *findings(found, names, estimates, directions, slopes, min(quickest), log.sample_period),
         ),
         seen=seen,

@@ -14,6 +14,7 @@ from zwidth.data.identification.device.estimate import MOST_CONFIDENCE, Directio
 from zwidth.data.logs import Finding
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
+from zwidth.model.device.transmission import Transmission
 from zwidth.model.environment.environment import Environment
 from zwidth.quantity.answered import answered
 from zwidth.quantity.exact import Interval, as_parameter, ends
@@ -21,6 +22,7 @@ from zwidth.quantity.exact import Interval, as_parameter, ends
 if TYPE_CHECKING:
     import xarray as xr
 
+    from zwidth.data.identification.device.two_masses import TwoMasses
     from zwidth.loop.trace import Trace
     from zwidth.model.device.friction import FrictionCurve
 
@@ -68,6 +70,11 @@ class IdentifiedNumbers:
     strokes: int = answered("how many the numbers rest on")
     pulses: int = answered("how many of them, inside the strokes")
     findings: tuple[Finding, ...] = answered("what a person should know: `kind` and `text` of each")
+    cable: TwoMasses | None = answered(
+        "both sides of a cable, belt or gear that gives way; None where one mass explains the log",
+        only_shown=True,
+        default=None,
+    )
     seen: Trace = answered(
         "mean speed and friction of up to some ten thousand pulses, for pictures", only_shown=True
     )
@@ -94,10 +101,8 @@ class IdentifiedNumbers:
             Further arguments of `Device`, such as name or force_limit.
         """
         if self.shows("wrong model"):
-            raise InputError(
-                "these numbers are of a mass and a damper, and Coulomb friction is seen: no device has them, "
-                'and walls that they allow take energy out; identify with model="Coulomb and viscous"'
-            )
+            why = next(str(finding) for finding in self.findings if finding.kind == "wrong model")
+            raise InputError(f"{why}; no device has them, and walls that they allow take energy out")
         given: dict[str, Any] = {
             "sample_period": self.sample_period,
             "resolution": self.resolution,
@@ -110,6 +115,14 @@ class IdentifiedNumbers:
             given["mass"] = _parameter(self.estimates["mass"], confidence)
         given |= self._friction(confidence)
         given["friction_speed"] = self.speed
+        if self.cable is not None:
+            between: dict[str, Any] = {
+                name: _parameter(each, confidence) for name, each in self.cable.between.items()
+            }
+            for name in ("stiffness", "handle_mass"):
+                if ends(as_parameter(between[name]))[0] <= 0:
+                    del between[name]  # unknown: as with the mass
+            given["transmission"] = Transmission(**between)
         if "mass" in given and ends(as_parameter(given["mass"]))[0] <= 0:
             del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})
@@ -121,17 +134,23 @@ class IdentifiedNumbers:
 
     def least_damping(self, confidence: float) -> float:
         """The slope that friction has at least, each way and up to `speed`; 0 where it may fall."""
+        if self.cable is not None:
+            return self.cable.least_damping(_checked(confidence))
         mean = self.estimates["damping"].interval(_checked(confidence))[0]
         return max(min(mean, self.directions.least(confidence), self.slopes.least(confidence)), 0.0)
 
     def least_coulomb_friction(self, confidence: float) -> float:
         """What friction is at least above `least_damping` times the speed, in the mean of both directions."""
         low = self.estimates["coulomb_friction"].interval(_checked(confidence))[0]
+        if self.cable is not None:
+            return max(low, 0.0)
         curve = self.friction_curve(confidence)
         return max(min(low, float(curve.largest_coulomb_friction(curve.largest_damping))), 0.0)
 
     def best_damping(self) -> float:
         """The best guess of what a wall rests on: the lesser, where directions or slopes surely differ."""
+        if self.cable is not None:
+            return self.cable.damping.value
         found = [self.estimates["damping"].value]
         if self.shows("damping by direction"):
             found.append(self.directions.weaker.value)
@@ -141,6 +160,12 @@ class IdentifiedNumbers:
 
     def _friction(self, confidence: float | None) -> dict[str, float | Interval]:
         """Damping and, where it was fitted, Coulomb friction: best guesses, or intervals."""
+        if self.cable is not None:
+            own = {n: _parameter(self.estimates[n], confidence) for n in ("damping", "coulomb_friction")}
+            if confidence is not None:
+                ends_ = ends(as_parameter(own["damping"]))
+                own["damping"] = Interval(min(float(ends_[0]), self.least_damping(confidence)), ends_[1])
+            return own
         dry = "coulomb_friction" in self.estimates
         if confidence is None:
             if self.shows("bent friction"):
@@ -181,9 +206,11 @@ class IdentifiedNumbers:
             Further arguments of `Device`, such as delay.
         """
         from zwidth.passivity.check import check_by_closed_forms  # the game would be played at every step
+        from zwidth.passivity.transmission import seen_at_motor
 
         def passive(confidence: float) -> bool:
             device = self.device(confidence or None, **others)
+            device = device if self.cable is None else seen_at_motor(device)
             return check_by_closed_forms(device, environment, contact=contact).outcome == "passive"
 
         return _largest(passive)

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from zwidth.model.device.device import Device
+from zwidth.model.device.transmission import Transmission
 from zwidth.model.specification.write import toml
 from zwidth.quantity.answered import data_of
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import as_decimal, in_a_table, quantity_unit, told_quantity, unit_text
 from zwidth.showing import Lines, Part, Table, one_line
@@ -46,10 +48,25 @@ NAMES = {
 }
 
 BOTH_SIDES = (
-    "m, b and f_c are the sum of both sides of a cable, belt or gear between motor and hand; where the motor "
-    "swings on it only its own side pays"
+    "m, b and f_c are the sum of both sides of a cable, belt or gear; where the motor swings on it only its "
+    "own side pays (a shaken log shows it)"
 )
 """What is taken for granted of every device: motor, encoder and hand move as one."""
+
+
+_BETWEEN = parameters_of(Transmission)
+
+
+EACH_SIDE = (
+    "m, b and f_c are those of the motor's side; a wall rests on b + c b₂/(c + b₂), for every stiffness of "
+    "the cable and every mass behind it"
+)
+"""What is said instead where the log shows that they do not."""
+
+
+def assumed(identified: IdentifiedNumbers) -> str:
+    """Whose numbers these are."""
+    return BOTH_SIDES if identified.cable is None else EACH_SIDE
 
 
 class Row(NamedTuple):
@@ -84,6 +101,12 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
                 estimate = getattr(identified.directions, name)
                 low, high = estimate.interval(confidence)
                 table.append(_row("b", f"  {name}", estimate.value, low, high, estimate.unit))
+    if identified.cable is not None:
+        for key, estimate in identified.cable.between.items():
+            low, high = estimate.interval(confidence)
+            symbol, name = _BETWEEN[key].quantity.symbol, key.replace("_", " ").replace("coulomb", "Coulomb")
+            name = name if key.startswith("handle") else f"{name} of the cable"
+            table.append(_row(symbol, name, estimate.value, low, high, estimate.unit))
     stiffness = GLOSSARY["stiffness"].unit_for(identified.motion)
     for limit in limits(identified):
         low, high = limit.interval(confidence)
@@ -118,7 +141,7 @@ def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[
     yield Table(caption=title(identified), heads=heads, rows=rows(identified, confidence))
     yield ""
     yield facts(identified)
-    yield BOTH_SIDES
+    yield assumed(identified)
     if identified.findings:
         yield Lines(identified.findings)
 
@@ -146,10 +169,15 @@ def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
         "confidence": confidence,
         **data_of(identified),
         "advice": list(advice(identified, confidence)),
-        "assumptions": [BOTH_SIDES],
+        "assumptions": [assumed(identified)],
     }
     for name, estimate in identified.estimates.items():
         document[key(name)] = _estimate(estimate, confidence)
+    if identified.cable is not None:
+        document["transmission"] = {
+            f"{name}_{unit_suffix(_BETWEEN[name].unit_for(identified.motion))}": _estimate(each, confidence)
+            for name, each in identified.cable.between.items()
+        }
     for name in ("inward", "outward"):
         estimate = getattr(identified.directions, name)
         document[key(f"damping_{name}", "damping")] = _estimate(estimate, confidence)
@@ -198,6 +226,11 @@ def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | N
             if key == "friction_speed":
                 shown = _rounded(ends(value)[0], ROUND_FLOOR)  # no farther than was seen
             lines.append(f"{name} = {shown}  # {_origin(identified, key, device.motion, confidence)}")
+    if device.transmission is not None:
+        lines += ["", "[device.transmission]"]
+        for key, value in device.transmission.parameters().items():
+            unit = unit_text(_BETWEEN[key].unit_for(device.motion))
+            lines.append(f"{key} = {_value(value, True)}  # {unit}: identified, as the numbers above")
     return "\n".join(lines) + "\n"
 
 
@@ -207,7 +240,7 @@ def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]
         f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means "
         f"over {milliseconds:.3g} ms, r² = {identified.explained:.4f}.",
         "m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a, in means over smooth pulses inside strokes.",
-        f"{BOTH_SIDES}.",
+        f"{assumed(identified)}.",
     ]
     story += [
         f"{finding}" for finding in identified.findings if finding.kind in ("wrong model", "bent friction")
@@ -294,6 +327,8 @@ def limits(identified: IdentifiedNumbers) -> tuple[Limit, ...]:
     if "damping" in identified.estimates:
         factor = 2 / identified.sample_period
         estimate, best = identified.estimates["damping"], identified.best_damping()
+        if identified.cable is not None:
+            estimate = identified.cable.damping
         found.append(Limit("damping", "2b/T", factor, estimate, best, identified.least_damping))
     if "coulomb_friction" in identified.estimates and identified.resolution > 0:
         factor = 2 / identified.resolution
@@ -316,7 +351,7 @@ def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) ->
     at = f"at {told_quantity(identified.speed, 'friction_speed', identified.motion, 3)}"
     ways = {"into the wall": "inward", "out of the wall": "outward"}
     known = [("it", limit.estimate, "a longer log")]
-    for way, name in ways.items() if limit.parameter == "damping" else ():
+    for way, name in ways.items() if limit.parameter == "damping" and identified.cable is None else ():
         known.append((f"that {way}", getattr(identified.directions, name), f"more strokes {way}"))
         slope = getattr(identified.slopes, name)
         known.append((f"the slope of friction {at} {way}", slope, f"more strokes {way} {at}"))
@@ -332,6 +367,8 @@ def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) ->
 def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     """Which number limits the stiffest wall, and how to know it better."""
     if identified.shows("wrong model"):
+        if identified.cable is not None:
+            return ("log once more, nobody at the handle, the motor shaking it harder, and quicker",)
         return ("fit Coulomb friction too: these numbers are of another model than the device",)
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])
