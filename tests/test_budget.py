@@ -19,8 +19,8 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 LINES = {
     "beside the rooms": 929,
     "checker": 10400,
-    "cli": 10426,
-    "data": 21833,
+    "cli": 10430,
+    "data": 22301,
     "links": 2317,
     "loop": 6595,
     "machine": 17455,
@@ -33,11 +33,11 @@ LINES = {
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 132722
+IN_ALL = 133194
 PHYSICS = 63751
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 659, 25
+FILES_IN_ALL, IN_A_FOLDER = 660, 25
 
 ALONE = 134
 """Files that one other file alone imports."""
