@@ -18,7 +18,7 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 
 LINES = {
     "beside the rooms": 929,
-    "checker": 10400,
+    "checker": 10405,
     "cli": 10430,
     "data": 22301,
     "links": 2317,
@@ -26,15 +26,15 @@ LINES = {
     "machine": 17455,
     "model": 17448,
     "native": 1658,
-    "passivity": 27252,
+    "passivity": 27273,
     "quantity": 2056,
-    "show": 8868,
+    "show": 8870,
     "study": 5485,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 133194
-PHYSICS = 63751
+IN_ALL = 133222
+PHYSICS = 63777
 """Lines of quantity, model, loop, passivity and checker."""
 
 FILES_IN_ALL, IN_A_FOLDER = 660, 25

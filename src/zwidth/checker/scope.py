@@ -18,6 +18,7 @@ BROKEN: Contact = "made and broken"
 KEPT: Contact = "kept"
 BOTH_SIDES: Contact = "both sides"
 IDEAL, COUNTED = "ideal", "counted"
+RIGID = "rigid"
 PASSIVE, ACTIVE, STABLE, UNSTABLE, INDEX, NO_INDEX = (
     "passive", "active", "stable", "unstable", "index at least", "index below",
 )  # fmt: skip

@@ -13,7 +13,7 @@ from .document.file import read_file
 from .document.number import about
 from .document.refusal import Invalid, one_document
 from .one import Verified, verify
-from .scope import ACTIVE, COUNTED, INDEX, KEPT, NO_INDEX, PASSIVE, STABLE, UNSTABLE, Scope
+from .scope import ACTIVE, COUNTED, INDEX, KEPT, NO_INDEX, PASSIVE, RIGID, STABLE, UNSTABLE, Scope
 from .whole import IN_CONTACT, NO_STEPS, PAPER, UNDECIDED, Statement, read_whole
 
 _BETTER, _WORSE = (PASSIVE, STABLE), (ACTIVE, UNSTABLE)
@@ -131,8 +131,11 @@ def _misfit(stated: Statement, name: str, evidence: Mapping[str, Any], covered: 
         return misfit
     if shows in (INDEX, NO_INDEX):
         return _misfit_of_a_port(evidence, shows, said)
-    if covered.transmission and stated.scope and stated.scope.get("transmission") != covered.transmission:
+    joined = stated.scope.get("transmission", RIGID) if stated.scope else covered.transmission
+    if covered.transmission and joined != covered.transmission:
         return "is of one transmission, of the numbers in it"
+    if shows == ACTIVE and not covered.transmission and joined != RIGID:
+        return "is of motor and hand that move as one"
     needed = _SHOWN_BY.get(str(said))
     if (shows not in (_BETTER if name == "certificate" else _WORSE)) if needed is None else needed != shows:
         return {

@@ -202,13 +202,14 @@ _SCOPE = {
     "fed_with": ("position", "penetration", ""),
     "force_limit_counted": (True, False),
     "force_steps_counted": (True, False),
+    "transmission": ("rigid", "any", "as given"),
 }
 """What of a scope is held against the evidence, beside the hands."""
 _HANDS = ("every", "bounded", "known", "activity")
 _OF_A_SCOPE = Shape(
     told=(
         "sampling", "clamped", "damping", "coulomb_friction", "friction_speed", "largest_force",
-        "largest_moment", "transmission", "torque", "friction", "region", "bounds", "intervals", "assumed",
+        "largest_moment", "torque", "friction", "region", "bounds", "intervals", "assumed",
         "law", "also",
     )
 )  # fmt: skip

@@ -146,7 +146,7 @@ class TransmissionVerdict(Verdict):
         most = self.max_stiffness_viscous if in_contact else self.max_stiffness
         to = at_most(most, unit["stiffness"])
         if to and to != inf and parameter_limits.has_stiffness(self.environment):
-            now = float(parameter_limits.stiffness_of(self.environment))
+            now = float(ends(parameter_limits.stiffness_of(self.environment))[1])
             here, there = (in_unit(value, unit["stiffness"]) for value in (now, to))
             text = (
                 f"stiffness may go up to {there} (now {here})"
@@ -154,20 +154,22 @@ class TransmissionVerdict(Verdict):
                 else f"lower the stiffness from {here} to {there}"
             )
             yield Advice("stiffness", now, to, unit["stiffness"], "slack" if proved else "change", text)
-        need = getattr(self.side, "required_damping", None)
-        if need is not None and not proved:
-            now = float(ends(self.device.damping)[0])
-            more = at_least(now + need - float(ends(seen_at_motor(self.device).damping)[0]), unit["damping"])
-            assert more is not None
-            here, there = (in_unit(value, unit["damping"]) for value in (now, more))
-            yield Advice(
-                "damping",
-                now,
-                more,
-                unit["damping"],
-                "change",
-                f"raise the damping of the motor's side from {here} to {there}",
-            )
+        if not proved:
+            yield from self._of_the_motor(unit["damping"])
+
+    def _of_the_motor(self, unit: str) -> Iterator[Advice]:
+        """What more friction on the motor's side would do alone."""
+        need, decision = getattr(self.side, "required_damping", None), getattr(self.side, "decision", None)
+        if need is None or decision is None:
+            return
+        has = float(ends(self.device.damping)[0])
+        short = need - float(ends(seen_at_motor(self.device).damping)[0])
+        dry, enough = float(ends(self.device.coulomb_friction)[0]), decision.sufficient_friction
+        if short > 0 and enough is not None and enough <= dry:
+            yield _raised("damping", "damping", has, at_least(has + short, unit), unit)
+        elif short <= 0 and enough is not None and enough > dry:
+            unit = self.device.unit("coulomb_friction")
+            yield _raised("coulomb_friction", "Coulomb friction", dry, at_least(float(enough), unit), unit)
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
@@ -182,6 +184,13 @@ class TransmissionVerdict(Verdict):
         if self.resonance is not None:
             rows.append(("the motor swings on it at", in_unit(self.resonance, "Hz")))
         return rows
+
+
+def _raised(parameter: str, name: str, now: float, to: float | None, unit: str) -> Advice:
+    assert to is not None
+    here, there = (in_unit(value, unit) for value in (now, to))
+    text = f"raise the {name} of the motor's side from {here} to {there}"
+    return Advice(parameter, now, to, unit, "change", text)
 
 
 def is_ideal(device: Device) -> bool:

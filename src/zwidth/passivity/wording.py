@@ -112,8 +112,8 @@ _TRANSMISSION: dict[Transmission, _Said] = {
     "": _Said("", ""),
     "rigid": _Said(TRANSMISSION, AS_ONE),
     "any": _Said(
-        "friction of the motor's side pays for all, with what damping inside the transmission adds "
-        "whatever the hand does: however cable, belt or gear give way, and whatever they move",
+        "friction of the motor's side pays for all, with what damping inside and behind the transmission, as "
+        "given, adds whatever the hand does: however stiff cable, belt or gear are, and whatever they move",
         "any stiffness between motor and hand",
     ),
     "as given": _Said(
@@ -121,6 +121,9 @@ _TRANSMISSION: dict[Transmission, _Said] = {
         "a transmission of the numbers given",
     ),
 }
+_TAKES: dict[Transmission, str] = {
+    "": "the device", "rigid": "the device", "any": "what the motor moves", "as given": "the motor's side"
+}  # fmt: skip
 _HELD: dict[Transmission, str] = {
     "": "the device", "rigid": "the device", "any": "the device", "as given": "the hand's side"
 }  # fmt: skip
@@ -253,8 +256,8 @@ def _losses(scope: Scope) -> Iterator[str]:
         b = told_quantity(scope.damping, "damping", scope.motion)
         dry = told_quantity(scope.coulomb_friction, "force", scope.motion)
         yield (
-            f"the device takes out at least b = {b} of viscous and f_c = {dry} of Coulomb friction"
-            f"{_measured(scope)}"
+            f"{_TAKES[scope.transmission]} takes out at least b = {b} of viscous and f_c = {dry} of Coulomb "
+            f"friction{_measured(scope)}"
         )
     elif scope.damping is not None:
         b = told_quantity(scope.damping, "damping", scope.motion)

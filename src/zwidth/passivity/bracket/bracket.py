@@ -143,6 +143,10 @@ _NO_PART = {
     "supply_voltage": "the actuator is taken to give every force at once",
     "current_limit": "the actuator is taken to give every force at once",
 }
+_NO_PART_BEHIND = {
+    "handle_mass": _NO_PART["mass"],
+    "handle_coulomb_friction": "a large motion outweighs it",
+}
 
 
 def refuse_without_part(key: str, force_limit: bool, force_resolution: bool) -> None:
@@ -228,6 +232,8 @@ def _of_device(device: Device, environment: Environment, key: str) -> Parameter:
 def _of_transmission(device: Device, environment: Environment, key: str) -> Parameter:
     given = device.transmission
     assert given is not None
+    if key in _NO_PART_BEHIND:
+        raise InputError(f"transmission.{key} plays no part, so it has no limit: {_NO_PART_BEHIND[key]}")
     own = given.parameters()
     now = own.get(key)
     if not isinstance(now, Exact):

@@ -107,7 +107,10 @@ class Search:
         known = next((each for each in (good, bad) if each is not None), verdict(self.first))
         proof = None if good is None else good.certificate
         motion, violation = (None, None) if bad is None else (bad.witness, bad.violation)
-        return Found(passive, active, proof, motion, known.scope, violation)
+        scope = known.scope
+        if bad is not None and bad.scope.transmission == "as given":  # what holds for any holds for this one
+            scope = scope.replace(transmission="as given")
+        return Found(passive, active, proof, motion, scope, violation)
 
     @property
     def beyond(self) -> str:

@@ -134,6 +134,8 @@ def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
         "loss": (GREEN, "lost in friction"),
         "kinetic_energy": (BLUE, "kinetic"),
     }
+    if "transmission_energy" in trace:
+        names["transmission_energy"] = (GREY, "in the transmission")
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
     lost = lost + trace["transmission_loss"].values if "transmission_loss" in trace else lost
     curves = {name: lost if name == "loss" else trace[name].values for name in names}

@@ -290,8 +290,8 @@ def _beyond(verdict: Answer) -> Iterator[str]:
             "A device of other numbers: the proof is about those below. Measure the device's own friction; "
             "where there is less of it, or a slower or later loop, ask again."
         )
-    bends = "What bends between motor, encoder and handle" if given == "rigid" else "Backlash of a gear"
-    yield f"{bends}, and torque ripple of the motor."
+    ends = {"rigid": "What bends between motor, encoder and handle, and torque", "any": "Torque"}
+    yield f"{ends.get(given, 'Backlash of a gear, and torque')} ripple of the motor."
     yield "Other forces that the same program adds to this law: ask about the law that is their sum."
 
 
