@@ -134,7 +134,7 @@ def _misfit(stated: Statement, name: str, evidence: Mapping[str, Any], covered: 
     joined = stated.scope.get("transmission", RIGID) if stated.scope else covered.transmission
     if covered.transmission and joined != covered.transmission:
         return "is of one transmission, of the numbers in it"
-    if shows == ACTIVE and not covered.transmission and joined != RIGID:
+    if shows == ACTIVE and not covered.transmission and joined in ("any", "as given"):
         return "is of motor and hand that move as one"
     needed = _SHOWN_BY.get(str(said))
     if (shows not in (_BETTER if name == "certificate" else _WORSE)) if needed is None else needed != shows:

@@ -202,7 +202,7 @@ _SCOPE = {
     "fed_with": ("position", "penetration", ""),
     "force_limit_counted": (True, False),
     "force_steps_counted": (True, False),
-    "transmission": ("rigid", "any", "as given"),
+    "transmission": ("rigid", "any", "as given", ""),
 }
 """What of a scope is held against the evidence, beside the hands."""
 _HANDS = ("every", "bounded", "known", "activity")
