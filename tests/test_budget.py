@@ -19,8 +19,8 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 LINES = {
     "beside the rooms": 929,
     "checker": 10405,
-    "cli": 10430,
-    "data": 22301,
+    "cli": 10435,
+    "data": 22302,
     "links": 2317,
     "loop": 6595,
     "machine": 17455,
@@ -33,7 +33,7 @@ LINES = {
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 133222
+IN_ALL = 133228
 PHYSICS = 63777
 """Lines of quantity, model, loop, passivity and checker."""
 

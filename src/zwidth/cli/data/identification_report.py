@@ -30,7 +30,14 @@ from zwidth.quantity.text import shown, shown_at_most
 _SHOWN = 0.95
 """Confidence of the intervals in the table."""
 
-_WARNINGS = ("wrong model", "two masses", "bent friction", "no damping", "no coulomb friction")
+_WARNINGS = (
+    "wrong model",
+    "two masses",
+    "not one mass",
+    "bent friction",
+    "no damping",
+    "no coulomb friction",
+)
 """Kinds of findings that are coloured."""
 
 
@@ -70,8 +77,6 @@ def _headline(found: Identification) -> Padding:
 
 def _claim(found: Identification) -> str:
     if found.identified.shows("wrong model"):
-        if found.identified.cable is not None:
-            return "One mass does not explain the log, nor do two: these numbers allow no wall."
         return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
     device = found.identified.device(found.confidence, **found.others)
     device = device if device.transmission is None else seen_at_motor(device)

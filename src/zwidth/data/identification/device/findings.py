@@ -56,13 +56,13 @@ def findings(
 
 
 def moves_apart(cable: TwoMasses) -> Finding:
-    """Where the log surely shows two masses, or that one does not explain it."""
+    """Where the log surely shows two masses, or that neither one nor two explain it."""
     if not cable.explain:
         return Finding(
-            kind="wrong model",
-            text="one mass is the wrong model: something gives way between motor and handle, or more than "
-            "friction and a constant force acts; two masses on a spring do not explain the log either, to "
-            "the encoder's steps: log once more with nobody at the handle, the motor shaking it harder",
+            kind="not one mass",
+            text="one mass leaves more of the readings than the encoder's steps, and so do two: the numbers "
+            "are those of one. Where something gives way between motor and handle, walls rest on the motor's "
+            "side alone; to see it, shake the motor harder, with nobody at the handle",
         )
     share = cable.damping.value / (cable.motor["damping"].value + cable.between["handle_damping"].value)
     text = (

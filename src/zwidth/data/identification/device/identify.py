@@ -74,7 +74,8 @@ def identify_log(
         raise InputError(too_little(log))
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     shaken = log.channels == ("actuator_force",) and model == "Coulomb and viscous" and mass is None
-    cable = two_masses(log, estimates, late) if shaken else None
+    apart = two_masses(log, estimates, late) if shaken else None
+    cable = apart if apart is not None and apart.explain else None
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates if cable is None else {**estimates, **cable.motor},
@@ -96,7 +97,7 @@ def identify_log(
         pulses=found.moments.pulses,
         findings=(
             *log.findings,
-            *(() if cable is None else (moves_apart(cable),)),
+            *(() if apart is None else (moves_apart(apart),)),
             *findings(found, names, estimates, directions, slopes, min(quickest), log.sample_period),
         ),
         seen=seen,
