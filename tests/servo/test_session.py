@@ -435,7 +435,7 @@ def test_a_detent_begins_at_its_bottom_alone():
     away = np.linspace(top, 0.0, 60)
     device = Played(np.concatenate([np.full(100, top), away, np.zeros(100)]))
     servo = served(device, detent, safety=Safety(force=10, start_force=0.1))
-    begins = int(column(servo, "sample")[column(servo, "phase") == 2][0])
+    begins = int(np.flatnonzero(column(servo, "phase") == 2)[0])  # a row: a sample may have been missed
     assert abs(column(servo, "force_N")[:begins]).max() == 0
     assert abs(column(servo, "position_m")[begins]) < 0.001
 
