@@ -232,8 +232,8 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
         violation = ElasticViolation(elastic, setting, decision)
         if decision.reason == "too close to zero" or not violation.verify():
             return replace(found, open=_TOO_CLOSE)
-        found = replace(found, outcome="active", scope=scope.replace(contact=violation.contact))
-        return replace(found, violation=violation)
+        scope = scope.replace(contact=violation.contact)
+        return replace(found, outcome="active", scope=scope, violation=violation)
     if not (is_ideal(device) and elastic.loop.hidden_modes_decay):
         return replace(found, open=_IF_IDEAL if elastic.loop.hidden_modes_decay else _HIDDEN)
     certificate = Certificate((_proof(elastic, setting, decision),))

@@ -166,7 +166,7 @@ CASES = [
         violation(([0, 0], [1, -2]), cable(encoder="handle"), UNSTABLE),
         "have a common factor",
     ),
-    accepted("it pulls", violation(([-TINY], [1]), cable(), STATIC), "H(1) is negative"),
+    accepted("it pulls", violation(([-TINY], [1]), cable(), STATIC), "at the hand is negative"),
     accepted("it pulls at the hand", violation(([-TINY], [1]), cable(encoder="handle"), STATIC)),
     refused(
         "at rest it does nothing", violation(([-1, 1], [1, 0]), cable(), STATIC), "not shown to be negative"

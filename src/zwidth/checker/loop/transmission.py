@@ -97,7 +97,7 @@ def elastic(told: Read) -> str:
     if _held(p, told.transmission) is not True:
         raise Invalid("the loop is not shown to be stable with the hand's side held")
     if sum(p.numerator) * p.denominator[0] < 0:
-        raise Invalid("the static stiffness H(1) is negative")
+        raise Invalid("the static stiffness at the hand is negative")
     return (
         "with its transmission the criterion is nonnegative at every frequency, and the loop is stable with "
         "the hand's side held"
@@ -117,7 +117,7 @@ def elastic_violation(told: Read) -> str:
         return "with the hand's side held the loop is unstable"
     if held is not True or sum(p.numerator) * p.denominator[0] >= 0:
         raise Invalid("the static stiffness is not shown to be negative")
-    return "the static stiffness H(1) is negative"
+    return "the static stiffness at the hand is negative"
 
 
 def _violated(p: Loop, told: Read, cosine: Fraction) -> str:
@@ -285,9 +285,8 @@ def _held(p: Loop, told: Read) -> bool | None:
         return inside_unit_circle(p.denominator)
     t = p.period
     m, k, drag = told.mass / t**2, told.stiffness, (p.damping + told.damping) / t
-    sigma = Fraction(2) ** (
-        isqrt(max(int(k / m), 1)).bit_length() - 1
-    )  # speeds over it: position and speed alike
+    # speeds are counted in this unit, so that position and speed are of one size
+    sigma = Fraction(2) ** (isqrt(max(int(k / m), 1)).bit_length() - 1)
     bits = _bits((sigma + k / (m * sigma) + drag / m + 1) ** 2, p)
 
     def at(value: Fraction | int) -> Enclosed:
