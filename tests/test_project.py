@@ -26,8 +26,7 @@ from scipy.signal import TransferFunction
 import zwidth as zw
 from zwidth import checker
 from zwidth.cli.commands import COMMANDS
-from zwidth.cli.main import _parser, main
-from zwidth.cli.parsing import joined
+from zwidth.cli.main import main
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
@@ -416,10 +415,6 @@ def test_no_module_bears_the_name_of_what_its_package_offers():
                 assert not inside & beside, f"{stub}: {inside & beside}"
 
 
-RUN = ("--plan", "identify", "verify", "workspace arm.urdf", "check")
-"""What is run here; the rest is read, or run in tests/documentation, or by the tests of its command."""
-
-
 def _readme_commands():
     """The lines of the README that begin with zwidth, as typed."""
     lines = [line for block in _blocks("README.md", "sh") for line in block.splitlines()]
@@ -430,17 +425,9 @@ def test_each_command_of_the_readme_works_as_typed(tmp_path, monkeypatch, capsys
     """Its options exist, and the files that it reads are samples, or were written by a line above."""
     monkeypatch.chdir(tmp_path)
     lines = _readme_commands()
-    assert len(lines) > 30
-    assert main(["examples", "."]) == 0
-    there = {path.name for path in tmp_path.iterdir()}
+    assert len(lines) == 12
     for line in lines:
         argv = shlex.split(line, comments=True)[1:]
-        _, unknown = _parser(argv).parse_known_args(joined(argv))
-        assert not unknown, line
-        written = {argv[k + 1] for k, word in enumerate(argv) if word in ("-o", "--plot")}
-        read = {word for word in argv if re.fullmatch(r"[a-z][\w-]*\.\w{3,5}", word)} - written
-        assert read <= there, line
-        there |= written
-        if read | written and any(mark in line for mark in RUN) and "--replay" not in line:
-            status = main(argv)
-            assert status in (0, 1, 3, 4), f"{line}\n{capsys.readouterr().err}"
+        ended = ["--duration", "0.2 s"] if argv[0] == "serve" else []  # else it runs until it is told to end
+        status = main([*argv, *ended])
+        assert status in (0, 1), f"{line}\n{capsys.readouterr().err}"
