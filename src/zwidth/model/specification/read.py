@@ -184,6 +184,12 @@ def _arguments(table: Table, motion: str) -> dict[str, Any]:
     for key, value in table.values.items():
         if key.startswith(BETWEEN):
             between.override(key.removeprefix(BETWEEN), value)
+    given = between.values or "transmission" in table.values
+    return {**own, "transmission": transmission_of(between, motion)} if given else own
+
+
+def transmission_of(between: Table, motion: str) -> Transmission:
+    """What a table of a transmission describes, "linear" or "rotary"."""
     known = parameters_of(Transmission)
     between.check_keys(known, "a transmission")
     read: dict[str, Any] = {}
@@ -197,8 +203,7 @@ def _arguments(table: Table, motion: str) -> dict[str, Any]:
                     value, kind.quantity, name, uncertain=True, bound=kind.bound, why=kind.why, motion=motion
                 )
             )
-    given = read or "transmission" in table.values
-    return {**own, "transmission": Transmission(**read)} if given else own
+    return Transmission(**read)
 
 
 def question_time(written: object, delay: Exact | Interval, name: str) -> None:
