@@ -99,8 +99,8 @@ JOINTS = {
         f"{option} VALUES": f"{meaning}, one value for all or one for each: 0.001,0.002 [{unit}]"
         for option, _, unit, meaning in _JOINT_OPTIONS
     },
-    "--joints FILE": f"a .toml file whose [joints] has some of {', '.join(_UNITS)}, transmission; damping may be a "
-    "matrix",
+    "--joints FILE": f"a .toml file whose [joints] has some of {', '.join(_UNITS)}, "
+    "transmission; damping may be a matrix",
 }
 """Friction, encoders and motors of the joints."""
 
@@ -127,7 +127,9 @@ def read_joints(path: Path) -> dict[str, Any]:
     table = read_tables([path], ("joints",))["joints"]
     table.check_keys((*_UNITS, "transmission"), "joints")
     with located(table.label):
-        found = {key: _values(entry, key) for key, entry in table.values.items() if key in _UNITS}
+        found: dict[str, Any] = {
+            key: _values(entry, key) for key, entry in table.values.items() if key in _UNITS
+        }
     if "transmission" in table.values:
         found["transmission"] = joint_transmissions(table.values["transmission"], table.label)
     return found

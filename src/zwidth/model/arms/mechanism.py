@@ -131,8 +131,8 @@ class Mechanism:
 
 
 _BESIDE = (
-    "the spring of {} is one to a rest of its own, and gives back what it takes; of one between motor and link "
-    "such a file says nothing"
+    "the spring of {} is one to a rest of its own, and gives back what it takes; of one between motor and "
+    "link such a file says nothing"
 )
 
 

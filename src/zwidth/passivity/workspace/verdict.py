@@ -192,7 +192,7 @@ def between(arm: Arm) -> Transmission:
 
 
 def arm_document(arm: Arm) -> dict[str, Any]:
-    """Its name, what is known of damping that a description gave, and what motors feel behind their joints."""
+    """Its name, where a description's damping is from, and of joints that give way what motors feel."""
     source = arm.damping_source if isinstance(arm, DescribedArm) else ""
     felt = np.asarray(arm.at_motors.damping).tolist() if arm.transmissions else None
     return {
