@@ -121,8 +121,8 @@ def joints_of(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def read_joints(path: Path) -> dict[str, Any]:
     """The table [joints] of a TOML file."""
-    from zwidth.model.arms.reading import joint_transmissions
     from zwidth.model.specification.read import read_tables
+    from zwidth.model.specification.values import joint_transmissions
 
     table = read_tables([path], ("joints",))["joints"]
     table.check_keys((*_UNITS, "transmission"), "joints")

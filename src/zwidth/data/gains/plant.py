@@ -27,9 +27,9 @@ from typing import Any
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.data.gains.joint import JointGains
 from zwidth.errors import InputError
-from zwidth.model.arms.reading import joint_transmissions
 from zwidth.model.device import Device
 from zwidth.model.specification.table import quoted, suggestion
+from zwidth.model.specification.values import joint_transmissions
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number

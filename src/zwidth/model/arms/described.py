@@ -57,9 +57,8 @@ class DescribedArm(Arm):
             if (own := self.model.coordinates[joint.coordinate]).bare:
                 raise InputError(
                     f"joint {own.name!r} has a spring and no motor, as of a drive that gives way, and a wall "
-                    "has no torque there: take it out of the description, and say of the joint with the motor "
-                    "what is behind it, transmission, on the command line [joints.transmission] of --joints "
-                    "FILE"
+                    "has no torque there: take it out of the description, and say of the joint that has the "
+                    "motor what is behind it: transmission, of --joints FILE as [joints.transmission]"
                 )
 
     @property

@@ -25,8 +25,6 @@ from zwidth.model.arms.formats import read_mjcf, read_urdf
 from zwidth.model.arms.legs import Leg, LeggedArm
 from zwidth.model.arms.mechanism import Coordinate, Mechanism, parsed
 from zwidth.model.device.transmission import Transmission
-from zwidth.model.specification.read import transmission_of
-from zwidth.model.specification.table import Table
 
 _ENDINGS = (".urdf", ".xml", ".mjcf")
 _FAR = 1e3
@@ -111,21 +109,6 @@ def read_arm(
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
-
-
-def joint_transmissions(given: object, label: str, joints: int | None = None) -> tuple[Transmission, ...]:
-    """Those of a table of joints, where a key has a list one for each; without `joints` else one for all."""
-    if not isinstance(given, Mapping):
-        raise InputError(f"{label}: transmission is a table of its own, such as [joints.transmission]")
-    lists = {len(values) for values in given.values() if isinstance(values, list)}
-    counts = lists | ({joints} if joints else set()) or {1}
-    if len(counts) > 1:
-        raise InputError(f"{label}: each list of transmission has one value for each joint, all as long")
-    rows = [
-        {key: values[n] if isinstance(values, list) else values for key, values in given.items()}
-        for n in range(counts.pop())
-    ]
-    return tuple(transmission_of(Table(label, row), "rotary") for row in rows)
 
 
 def read_mechanism(path: Path) -> Mechanism:
