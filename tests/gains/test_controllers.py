@@ -131,6 +131,30 @@ def test_each_joint_is_decided_by_its_closed_form(tmp_path, share, outcome):
     assert found.outcome == outcome
 
 
+GIVING_WAY = "[arm]\ndamping = 1\n[arm.transmission]\nhandle_damping = 0.5\n{}"
+
+
+@pytest.mark.parametrize("more", ["", "stiffness = [9000, 50]", "damping = [0, 0.5]"])
+def test_a_gear_that_gives_way_is_as_any_cable(tmp_path, more):
+    given = read_controllers(written(tmp_path, "controllers.yaml", TRAJECTORY.replace("i: 4.0", "i: 0.0")))
+    plant = written(tmp_path, "arm.toml", GIVING_WAY.format(more))
+    found = check_controllers(given, str(plant))
+    scopes = {joint.verdict.scope.transmission for joint in found.joints}
+    assert (found.outcome, scopes) == ("passive", {"any"})
+    gains = passive_gains(given, str(plant), stiffest=True)
+    felt = [0.8, 0.8 * 1.25 if "damping" in more else 0.8]
+    assert [float(j.verdict.device.exact("damping")) for j in gains.joints] == pytest.approx(felt, rel=1e-12)
+    assert any("motors' side" in note for note in found.notes)
+
+
+def test_a_gear_that_gives_way_is_written_as_a_table(tmp_path):
+    given = read_controllers(written(tmp_path, "controllers.yaml", TRAJECTORY))
+    for more in ("stiffness = [1]", "stiffness = [1, 2, 3]", 'encoder = "link"', "k = 1"):
+        plant = written(tmp_path, "arm.toml", GIVING_WAY.format(more))
+        with pytest.raises(zw.InputError, match="transmission"):
+            check_controllers(given, str(plant))
+
+
 def test_an_integrator_gives_energy_out(tmp_path):
     """H(z) of all three gains, against a slow hand; without it the joint is passive."""
     controllers = read_controllers(written(tmp_path, NAME, TRAJECTORY))

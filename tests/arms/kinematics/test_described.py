@@ -275,7 +275,7 @@ def test_what_a_mechanism_with_a_follower_bears(tmp_path):
 @pytest.mark.parametrize(
     ("damping", "words"),
     [
-        ((0.0213, 0.01), "from the description; simulators' files often hold placeholders"),
+        ((0.0213, 0.01), "of motors or links; simulators' files often hold placeholders"),
         ((0.7, 0.7), "one number for every joint, most likely a simulator's"),
         ((10, 2), "round numbers, most likely"),
     ],

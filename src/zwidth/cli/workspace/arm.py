@@ -99,7 +99,8 @@ JOINTS = {
         f"{option} VALUES": f"{meaning}, one value for all or one for each: 0.001,0.002 [{unit}]"
         for option, _, unit, meaning in _JOINT_OPTIONS
     },
-    "--joints FILE": f"a .toml file whose [joints] has some of {', '.join(_UNITS)}; damping may be a matrix",
+    "--joints FILE": f"a .toml file whose [joints] has some of {', '.join(_UNITS)}, "
+    "transmission; damping may be a matrix",
 }
 """Friction, encoders and motors of the joints."""
 
@@ -121,17 +122,26 @@ def joints_of(arguments: argparse.Namespace) -> dict[str, Any]:
 def read_joints(path: Path) -> dict[str, Any]:
     """The table [joints] of a TOML file."""
     from zwidth.model.specification.read import read_tables
+    from zwidth.model.specification.values import joint_transmissions
 
     table = read_tables([path], ("joints",))["joints"]
-    table.check_keys(_UNITS, "joints")
+    table.check_keys((*_UNITS, "transmission"), "joints")
     with located(table.label):
-        return {key: _values(entry, key) for key, entry in table.values.items()}
+        found: dict[str, Any] = {
+            key: _values(entry, key) for key, entry in table.values.items() if key in _UNITS
+        }
+    if "transmission" in table.values:
+        found["transmission"] = joint_transmissions(table.values["transmission"], table.label)
+    return found
 
 
 def damping_in_words(arm: Arm) -> str:
     """Of each joint, or the matrix of joints that damp each other; and where it comes from."""
     source = getattr(arm, "damping_source", "")
-    return f"{_damping(arm)}, {source}" if source else _damping(arm)
+    text = f"{_damping(arm)}, {source}" if source else _damping(arm)
+    return (
+        f"{text}; of the motors' side, which feels {_damping(arm.at_motors)}" if arm.transmissions else text
+    )
 
 
 def _damping(arm: Arm) -> str:

@@ -39,7 +39,7 @@ class HeldJoint:
     def needed(self) -> float | None:
         """The damping that the joint needs [N·m·s/rad]; None where none is enough, or it is not known."""
         left = self.verdict.margins.get("damping")
-        return None if left is None else float(self.verdict.device.exact("damping")) - left
+        return None if left is None else float(self.verdict.device.motor_side.exact("damping")) - left
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -95,7 +95,7 @@ class HeldJoints(Documented):
             [
                 joint.law.name,
                 *(f"{float(v):g}" for v in (joint.law.stiffness, joint.law.integral, joint.law.damping)),
-                f"{float(joint.verdict.device.exact('damping')):g}",
+                f"{float(joint.verdict.device.motor_side.exact('damping')):g}",
                 _NONE if joint.needed is None else f"{joint.needed:.4g}",
                 joint.verdict.outcome,
             ]
@@ -164,14 +164,17 @@ def loops_of(
         *controllers.notes,
         f"{shown(Exact(often), 'Hz')}, torque {shown(Exact(late), 's')} after the reading"
         + (": one period, an assumption" if delay is None else ""),
-        "each joint by itself: what joints share, gravity and flexible gears are not in the model",
     )
     own: dict[str, Any] = {"rate": Exact(often), "delay": Exact(late)}
     if isinstance(plant, Device):
-        return Loops((plant.replace(**own),) * len(laws), often, late, notes)
-    rows = zip(laws, plant_of_file(len(laws), plant).follower, strict=True)
-    devices = tuple(Device(**row, **own, motion="rotary", name=law.name) for law, row in rows)
-    return Loops(devices, often, late, notes)
+        devices = (plant.replace(**own),) * len(laws)
+    else:
+        rows = zip(laws, plant_of_file(len(laws), plant).follower, strict=True)
+        devices = tuple(Device(**row, **own, motion="rotary", name=law.name) for law, row in rows)
+    rigid = all(device.transmission is None for device in devices)
+    out = "what joints share, gravity and flexible gears" if rigid else "what joints share and gravity"
+    more = () if rigid else ("b is of the motors' side: gears that give way are in the model, as given",)
+    return Loops(devices, often, late, (*notes, f"each joint by itself: {out} are not in the model", *more))
 
 
 def wall(law: JointLaw, rate: Fraction) -> Environment:

@@ -25,8 +25,9 @@ from zwidth.data.gains.parameters import parameter_file
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.passivity.check import check
+from zwidth.passivity.transmission import seen_at_motor
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 from zwidth.writing import writing_whole
@@ -144,12 +145,20 @@ def passive_gains(
     part = share_of(share)
     loops = loops_of(controllers, plant, rate, delay)
     joints = tuple(
-        _Joint(law, device.replace(damping=Exact(part * device.exact("damping"))), loops).nearest(stiffest)
+        _Joint(law, _felt(device, part), loops).nearest(stiffest)
         for law, device in zip(controllers.joints, loops.devices, strict=True)
     )
     steps = any(device.exact("resolution") for device in loops.devices)
     more = () if steps else ("encoder steps are not counted: their size was not given",)
     return PassiveGains(controllers, joints, part, loops.rate, loops.delay, (*loops.notes, *more))
+
+
+def _felt(device: Device, part: Fraction) -> Device:
+    """With a part of its damping; of a joint that gives way, of what its motor feels, however it does."""
+    if device.transmission is not None and device.transmission.encoder == "motor":
+        device = seen_at_motor(device)
+        return device.replace(damping=Exact(part * ends(device.damping)[0]))
+    return device.replace(damping=Exact(part * device.exact("damping")))
 
 
 def share_of(given: RealLike) -> Fraction:

@@ -7,6 +7,10 @@ From a TOML file,
     coulomb_friction = [0.3, 0.3, 0.2]
     resolution = "0.1 mrad"
 
+    [arm.transmission]                          of joints that give way; the above is the motors' side then
+    stiffness = [9000, 9000, 5000]
+    handle_damping = "0.2 N*m*s/rad"            of the link
+
 or as published for the family, and then they were measured on no arm of the reader's.
 """
 
@@ -25,6 +29,7 @@ from zwidth.data.gains.joint import JointGains
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.specification.table import quoted, suggestion
+from zwidth.model.specification.values import joint_transmissions
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
@@ -116,13 +121,17 @@ def plant_of_file(joints: int, path: str | Path) -> Plant:
 
 
 def _rows(table: GainTable, joints: int) -> tuple[dict[str, Any], ...]:
+    known = (*KEYS, "transmission")
     for key in table.values:
-        if key not in KEYS:
-            raise InputError(f"{table.label}: an arm has no {quoted(key)}; {suggestion(key, KEYS)}")
+        if key not in known:
+            raise InputError(f"{table.label}: an arm has no {quoted(key)}; {suggestion(key, known)}")
     if "damping" not in table:
         raise InputError(f"{table.label}: damping is missing: without it nothing is passive")
     columns: dict[str, list[Any]] = {}
     for key, value in table.values.items():
+        if key == "transmission":
+            columns[key] = [*joint_transmissions(value, table.label, joints)]
+            continue
         unit = GLOSSARY[key].rotary_unit
         if isinstance(value, list):
             columns[key] = table.numbers(key, unit, joints)

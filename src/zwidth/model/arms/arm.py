@@ -11,13 +11,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
+from fractions import Fraction
+from math import isfinite, nextafter
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from zwidth.errors import InputError
+from zwidth.model.device.transmission import Transmission
+from zwidth.quantity.exact import ends
 from zwidth.showing import one_line
 
 Array = npt.NDArray[np.float64]
@@ -66,12 +69,16 @@ class Arm(ABC):
         What each motor gives, > 0 [N·m; N]; empty: unknown.
     name
         For reports.
+    transmission
+        Of joints that give way between motor and link: a `Transmission` for all, or one for each joint,
+        seen at the joint [N·m/rad, N·m·s/rad; N/m, N·s/m]. Damping, friction and encoder steps above are
+        then those of the motors' side, and `handle_damping` is the link's. None: a joint is one piece.
 
     Raises
     ------
     InputError
         If a number is missing, not finite or outside its bound, or a matrix is no symmetric one without
-        negative eigenvalues.
+        negative eigenvalues; or if a joint that gives way is read at its link.
     """
 
     damping: Damping
@@ -79,6 +86,7 @@ class Arm(ABC):
     resolution: Sequence[float] = ()
     torque_limit: Sequence[float] = ()
     name: str = "arm"
+    transmission: Transmission | Sequence[Transmission] | None = None
 
     def __post_init__(self) -> None:
         m = self.joint_count
@@ -86,6 +94,7 @@ class Arm(ABC):
         object.__setattr__(self, "damping", joint_damping(self.damping, m))
         for key in ("coulomb_friction", "resolution", "torque_limit"):
             object.__setattr__(self, key, _numbers(getattr(self, key), key, m))
+        object.__setattr__(self, "transmission", _transmissions(self.transmission, m))
         if any(limit == 0 for limit in self.torque_limit):
             raise InputError("torque_limit must be > 0: a motor without torque renders nothing; leave it out")
 
@@ -135,10 +144,51 @@ class Arm(ABC):
     def sites(self, points: int) -> Sites:
         """The middles of about `points` × `points` cells that cover the region of this arm."""
 
+    @property
+    def transmissions(self) -> tuple[Transmission, ...]:
+        """Of each joint; empty where a joint is one piece."""
+        return _transmissions(self.transmission, self.joint_count)
+
+    @property
+    def at_motors(self) -> Arm:
+        """The arm that the motors feel, b + c b_l/(c + b_l) in each joint, whatever links and hand do.
+
+        For any q̇ of the links b θ̇² + c (θ̇ − q̇)² + b_l q̇² is no less than this times θ̇².  With intervals the
+        least of them counts.
+        """
+        if not self.transmissions:
+            return self
+        felt = np.array(self.damping, dtype=np.float64)
+        for i, each in enumerate(self.transmissions):
+            c, link = ends(each.damping)[0], ends(each.handle_damping)[0]
+            if c and link:
+                place = (i,) * felt.ndim
+                exact = Fraction(repr(float(felt[place]))) + c * link / (c + link)
+                felt[place] = nextafter(float(exact), 0.0)
+        return self.replace(damping=felt, transmission=Transmission())
+
     def replace(self, **changes: Any) -> Arm:
         """The same arm with some numbers changed."""
         given = {key: getattr(self, key) for key in self.__dataclass_fields__}
         return type(self)(**{**given, **changes})
+
+
+def _transmissions(
+    given: Transmission | Sequence[Transmission] | None, count: int
+) -> tuple[Transmission, ...]:
+    each = (given,) * count if isinstance(given, Transmission) else tuple(given or ())
+    if len(each) == 1:
+        each *= count
+    if not all(isinstance(one, Transmission) for one in each) or len(each) not in (0, count):
+        raise InputError(f"transmission: a zwidth.Transmission for all joints, or one for each of {count}")
+    for joint, one in enumerate(each, start=1):
+        if one.encoder != "motor":
+            raise InputError(
+                f"transmission: joint {joint} is read at its link, encoder = {one.encoder!r}, and what its "
+                "motor's damping pays for is not what the controller then sees: nothing is proved of such an "
+                "arm. Read the joint at the motor; of one joint alone zwidth check decides"
+            )
+    return each
 
 
 def as_joints(joints: npt.ArrayLike, count: int) -> Array:

@@ -51,6 +51,16 @@ class DescribedArm(Arm):
     joint_range: Sequence[tuple[float, float]]
     damping_source: str = ""
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for joint in self._path():
+            if (own := self.model.coordinates[joint.coordinate]).bare:
+                raise InputError(
+                    f"joint {own.name!r} has a spring and no motor, as of a drive that gives way, and a wall "
+                    "has no torque there: take it out of the description, and say of the joint that has the "
+                    "motor what is behind it: transmission, of --joints FILE as [joints.transmission]"
+                )
+
     @property
     def joint_count(self) -> int:
         return len(self.model.coordinates)

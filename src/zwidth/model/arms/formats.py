@@ -72,7 +72,11 @@ def read_mjcf(root: Element, stem: str) -> Mechanism:
         for equality in section.parts:
             reader.couple(equality)
     advice = _advice('damping="…" in <joint>', root, _NO_DAMPING_OF_MJCF)
-    return mechanism(root.given.get("model") or stem, advice, reader.written, reader.frames, reader.notes)
+    motors = [motor.given for section in root.all("actuator") for motor in section.parts]
+    turned_by = {given.get("joint", given.get("jointinparent")) for given in motors}
+    known = bool(motors) and None not in turned_by  # a tendon may move any joint
+    written = [joint._replace(driven=not known or joint.name in turned_by) for joint in reader.written]
+    return mechanism(root.given.get("model") or stem, advice, written, reader.frames, reader.notes)
 
 
 def _advice(damping_is: str, root: Element, others: dict[str, str]) -> str:
@@ -240,6 +244,7 @@ class _Reader:
                 friction=joint.number("frictionloss", 0.0, given),
                 effort=min(-least, most),
                 zero=joint.number("ref", 0.0, given) * angle,
+                spring=any(joint.numbers("stiffness", 3, given, 1) or ()),
             )
         )
         self.frames.append(Frame(name, len(self.written) - 1, Placement(), is_body=False))
@@ -434,4 +439,5 @@ def _urdf_joint(joint: Element, kind: str, before: int, at: Placement) -> Writte
         friction=0.0 if dynamics is None else dynamics.number("friction", 0.0),
         effort=effort,
         follows=follows,
+        spring=dynamics is not None and any(dynamics.number(k, 0.0) for k in dynamics.given if "stiff" in k),
     )

@@ -71,6 +71,8 @@ class Written(NamedTuple):
     effort: float = inf
     zero: float = 0.0
     follows: Follows | None = None
+    spring: bool = False  # to a rest of its own
+    driven: bool = True
 
 
 class Joint(NamedTuple):
@@ -95,6 +97,7 @@ class Coordinate(NamedTuple):
     damping: float
     friction: float
     effort: float
+    bare: bool  # a spring moves it, and no motor
 
 
 class Frame(NamedTuple):
@@ -116,6 +119,7 @@ class Mechanism:
     coordinates: tuple[Coordinate, ...]
     frames: tuple[Frame, ...]
     notes: tuple[str, ...] = ()
+    springs: tuple[str, ...] = ()  # what is to be known of those to a rest of their own
 
     def path(self, frame: Frame) -> list[Joint]:
         """The joints between the base and a frame, from the base on."""
@@ -124,6 +128,12 @@ class Mechanism:
             found.insert(0, self.joints[at])
             at = self.joints[at].before
         return found
+
+
+_BESIDE = (
+    "the spring of {} is one to a rest of its own, and gives back what it takes; of one between motor and "
+    "link such a file says nothing"
+)
 
 
 def mechanism(
@@ -144,6 +154,7 @@ def mechanism(
     coordinates = tuple(
         _coordinate(written[i], [(j, f, o) for j, (k, f, o) in every if k == i]) for i in free
     )
+    sprung = [joint.name for joint in written if joint.spring and joint.driven]
     return Mechanism(
         name=name,
         advice=advice,
@@ -151,6 +162,7 @@ def mechanism(
         coordinates=coordinates,
         frames=tuple(frames),
         notes=tuple(notes),
+        springs=(_BESIDE.format(", ".join(sprung[:5])),) if sprung else (),
     )
 
 
@@ -185,6 +197,7 @@ def _coordinate(own: Written, moves: Sequence[tuple[Written, float, float]]) -> 
         sum(factor**2 * joint.damping for joint, factor, _ in moves),
         sum(abs(factor) * joint.friction for joint, factor, _ in moves),
         own.effort,
+        any(joint.spring for joint, _, _ in moves) and not any(joint.driven for joint, _, _ in moves),
     )
 
 

@@ -24,6 +24,7 @@ from zwidth.model.arms.described import DescribedArm, PosedArm
 from zwidth.model.arms.formats import read_mjcf, read_urdf
 from zwidth.model.arms.legs import Leg, LeggedArm
 from zwidth.model.arms.mechanism import Coordinate, Mechanism, parsed
+from zwidth.model.device.transmission import Transmission
 
 _ENDINGS = (".urdf", ".xml", ".mjcf")
 _FAR = 1e3
@@ -42,6 +43,7 @@ def read_arm(
     pose: bool = False,
     rest: dict[str, float] | None = None,
     whole: bool = False,
+    transmission: Transmission | Sequence[Transmission] | None = None,
 ) -> DescribedArm:
     """Read an arm from a URDF or MJCF file.
 
@@ -66,6 +68,8 @@ def read_arm(
         in the middle of their ranges. None: in every orientation, for walls as stiff about every axis.
     whole
         Every joint that is not held goes over its whole range, for `zwidth.stiffness_over_postures`.
+    transmission
+        Of joints that give way, as of `Arm`: damping of the description is then taken as the motors' side's.
 
     Raises
     ------
@@ -96,7 +100,8 @@ def read_arm(
         "resolution": _for_each(resolution, m),
         "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
         "name": model.name,
-        "damping_source": _source(model) if damping is None else "",
+        "transmission": transmission,
+        "damping_source": "; ".join([*([_source(model)] if damping is None else []), *model.springs]),
     }
     if pose:
         resting = None if rest is None else _rest(given["joint_range"], names, rest)
@@ -134,10 +139,12 @@ def _for_each(values: Any, count: int) -> Any:
 def _source(model: Mechanism) -> str:
     """Of damping that is the description's: that it may be none of the arm's."""
     values = {each.damping for each in model.coordinates}
-    words = "from the description; simulators' files often hold placeholders: measure"
+    words = "from the description, which does not say whether of motors or links; "
     if len(model.coordinates) > 1 and all(float(f"{b:.0e}") == b for b in values):
         told = "round numbers" if len(values) > 1 else "one number for every joint"
-        words = f"from the description, {told}, most likely a simulator's placeholders: measure"
+        words += f"{told}, most likely a simulator's placeholders: measure"
+    else:
+        words += "simulators' files often hold placeholders: measure"
     return "; ".join([words, *model.notes])
 
 

@@ -157,11 +157,12 @@ def refuting_motion(
     """A motion near the joints `at` that takes energy out, `counted`: behind its encoders; or None.
 
     Of an arm with more joints than the hand has coordinates it is one of hands that hold the links, too.
+    Of one whose joints give way there is none: no hand moves the motors as it likes.
     """
     arm = arm.resting(at)
     jacobian = arm.jacobian(at)
     redundant = jacobian.shape[1] > jacobian.shape[0]
-    if not redundant and not holds_every_joint(jacobian, arm.turns):
+    if arm.transmissions or not (redundant or holds_every_joint(jacobian, arm.turns)):
         return None
     samples, shape = _worst(arm, wall, sample_period, delay_samples, jacobian)
     turn = np.cos(2 * np.pi / samples * np.arange(samples))

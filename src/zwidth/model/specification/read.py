@@ -27,10 +27,10 @@ from zwidth.model.environment import Environment
 from zwidth.model.specification.environments import build_environment, option_keys
 from zwidth.model.specification.laws import NOT_PROVED, ROW
 from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
-from zwidth.model.specification.values import word
+from zwidth.model.specification.values import BETWEEN, transmission_of
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.spoken import angles_in
 from zwidth.quantity.units import parse
 
@@ -41,9 +41,6 @@ _LONG_DELAY = Fraction(1, 2)
 
 LARGEST_FILE = 1 << 20
 """Bytes; a specification is a page of text."""
-
-BETWEEN = "transmission."
-"""What stands before a key of the transmission on the command line."""
 
 _OWN_KEYS = (*catalogue.PROPERTIES, *ROTARY, "motion", "name")
 DEVICE_KEYS = (*_OWN_KEYS, "catalogue", *(BETWEEN + key for key in parameters_of(Transmission)))
@@ -184,21 +181,8 @@ def _arguments(table: Table, motion: str) -> dict[str, Any]:
     for key, value in table.values.items():
         if key.startswith(BETWEEN):
             between.override(key.removeprefix(BETWEEN), value)
-    known = parameters_of(Transmission)
-    between.check_keys(known, "a transmission")
-    read: dict[str, Any] = {}
-    for key, value in between.values.items():
-        kind, name = known[key], BETWEEN + key
-        with located(between.where(key)):
-            read[key] = (
-                word(value, name, kind.words)
-                if kind.words
-                else read_number(
-                    value, kind.quantity, name, uncertain=True, bound=kind.bound, why=kind.why, motion=motion
-                )
-            )
-    given = read or "transmission" in table.values
-    return {**own, "transmission": Transmission(**read)} if given else own
+    given = between.values or "transmission" in table.values
+    return {**own, "transmission": transmission_of(between, motion)} if given else own
 
 
 def question_time(written: object, delay: Exact | Interval, name: str) -> None:

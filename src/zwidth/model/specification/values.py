@@ -14,12 +14,13 @@ from types import MappingProxyType
 from typing import Any
 
 from zwidth.errors import InputError
+from zwidth.model.device.transmission import Transmission
 from zwidth.model.environment import BackwardDifference, OnePole, VelocityFilter, Window
 from zwidth.model.environment.velocity import VelocityEstimator
-from zwidth.model.specification.table import Table, quoted, suggestion
+from zwidth.model.specification.table import Table, located, quoted, suggestion
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.parameter import Parameter, parameters_of, read_number
 from zwidth.quantity.units import parse, parse_number
 
 
@@ -177,3 +178,40 @@ _READ: Mapping[str, Callable[[Any, str], Any]] = MappingProxyType(
     {"coefficients": coefficients, "flag": flag, "node": as_text, "velocity filter": velocity_filter}
 )
 """By form, what has no unit."""
+
+
+BETWEEN = "transmission."
+"""What stands before a key of the transmission on the command line."""
+
+
+def transmission_of(between: Table, motion: str) -> Transmission:
+    """What a table of a transmission describes, "linear" or "rotary"."""
+    known = parameters_of(Transmission)
+    between.check_keys(known, "a transmission")
+    read: dict[str, Any] = {}
+    for key, value in between.values.items():
+        kind, name = known[key], BETWEEN + key
+        with located(between.where(key)):
+            read[key] = (
+                word(value, name, kind.words)
+                if kind.words
+                else read_number(
+                    value, kind.quantity, name, uncertain=True, bound=kind.bound, why=kind.why, motion=motion
+                )
+            )
+    return Transmission(**read)
+
+
+def joint_transmissions(given: object, label: str, joints: int | None = None) -> tuple[Transmission, ...]:
+    """Those of a table of joints, where a key has a list one for each; without `joints` else one for all."""
+    if not isinstance(given, Mapping):
+        raise InputError(f"{label}: transmission is a table of its own, such as [joints.transmission]")
+    lists = {len(values) for values in given.values() if isinstance(values, list)}
+    counts = lists | ({joints} if joints else set()) or {1}
+    if len(counts) > 1:
+        raise InputError(f"{label}: each list of transmission has one value for each joint, all as long")
+    rows = [
+        {key: values[n] if isinstance(values, list) else values for key, values in given.items()}
+        for n in range(counts.pop())
+    ]
+    return tuple(transmission_of(Table(label, row), "rotary") for row in rows)

@@ -31,7 +31,13 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.certificate import largest_certified, needed_at_rest, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.verdict import arm_document, motion_document, wall_document
+from zwidth.passivity.workspace.verdict import (
+    OF_JOINTS_THAT_GIVE_WAY,
+    arm_document,
+    between,
+    motion_document,
+    wall_document,
+)
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
@@ -109,13 +115,15 @@ class NullSpace(PassivityAnswer):
                 f"{' '.join(self._motions())} These are hands that hold the links, such as one at the elbow "
                 "and one at the end; of a hand at the end alone nothing is said."
             )
+        more = f" {OF_JOINTS_THAT_GIVE_WAY}" if self.question.arm.transmissions else ""
         if self.within is not None and self.certificate is not None:
             steps = " Encoder steps are not counted." if any(self.question.arm.resolution) else ""
-            return f"No motion of the hands takes energy out {self._near(self.within)}.{steps}"
+            return f"No motion of the hands takes energy out {self._near(self.within)}.{steps}{more}"
+        found = "looked for" if more else "found"
         if self.covered:
-            near = self._near(self.covered)
-            return f"No motion was found that takes energy out; that there is none is proved {near} alone."
-        return "No motion was found that takes energy out, and that there is none is proved nowhere."
+            near = f"proved {self._near(self.covered)} alone.{more}"
+            return f"No motion was {found} that takes energy out; that there is none is {near}"
+        return f"No motion was {found} that takes energy out, and that there is none is proved nowhere."
 
     @staticmethod
     def _near(distance: float) -> str:
@@ -149,6 +157,7 @@ class NullSpace(PassivityAnswer):
             encoder="not counted" if any(self.question.arm.resolution) else "ideal",
             torque="follows the arm",
             region=around,
+            transmission=between(self.question.arm),
         )
 
     def rows(self) -> Iterator[tuple[str, str]]:
@@ -249,7 +258,8 @@ def null_space(
     far = None if within is None else _not_negative(within, "rad", "within")
     certificate = None if far is None else null_space_certificate(question, spring, far)[0]
     covered, why = (far or 0.0, "") if certificate else largest_certified(question, spring)
-    found = slow_loop(arm, question.wall, spring, question.period, question.delay_samples, far)
+    loop, rigid = (question.wall, spring, question.period, question.delay_samples), not arm.transmissions
+    found = slow_loop(arm, *loop, far) if rigid else None  # no hand moves motors as it likes
     return NullSpace(
         question=question,
         spring=spring,
@@ -258,7 +268,7 @@ def null_space(
         why_not_more=why,
         wall_factor=_factor(question, spring),
         largest_damping=_largest_damping(question, spring),
-        fast=fast_motion(arm, question.wall, spring, question.period, question.delay_samples),
+        fast=fast_motion(arm, *loop) if rigid else None,
         loop=None if found is None else found[0],
         slow=None if found is None else found[1],
         certificate=certificate,

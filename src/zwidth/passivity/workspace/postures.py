@@ -30,7 +30,13 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
 from zwidth.passivity.workspace.question import Question, asked_of
-from zwidth.passivity.workspace.verdict import arm_document, motion_document, wall_document
+from zwidth.passivity.workspace.verdict import (
+    OF_JOINTS_THAT_GIVE_WAY,
+    arm_document,
+    between,
+    motion_document,
+    wall_document,
+)
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import outward_decimal, shown, shown_at_most
@@ -108,9 +114,12 @@ class PostureMap(PassivityAnswer):
         if self.motion is not None:
             by = " of hands that hold the links" if self.motion.imposed_by == "links" else " of the hand"
             return f"At one of {of} a motion{by} takes energy out."
+        gives_way = bool(self.question.arm.transmissions)
+        text = f"The condition holds at all of {of}; between them nothing is proved."
         if self.stiffness_factor < 1:
-            return f"At some of {of} the condition fails, and no motion was found that takes energy out."
-        return f"The condition holds at all of {of}; between them nothing is proved."
+            found = "looked for" if gives_way else "found that takes energy out"
+            text = f"At some of {of} the condition fails, and no motion was {found}."
+        return f"{text} {OF_JOINTS_THAT_GIVE_WAY}" if gives_way else text
 
     @property
     def scope(self) -> Scope:
@@ -121,6 +130,7 @@ class PostureMap(PassivityAnswer):
             encoder="not counted" if any(self.question.arm.resolution) else "ideal",
             torque="held" if held else "follows the arm",
             region="the postures that were tried",
+            transmission=between(self.question.arm),
         )
 
     @property

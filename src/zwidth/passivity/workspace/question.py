@@ -36,6 +36,7 @@ _MOST_DELAY = 100
 class Question:
     """The loop, `rate` [Hz] and d from reading to force, and the forces that are asked about.
 
+    Of joints that give way the `arm` is what the motors feel, and has their damping.
     `held_to`: up to which the torque is held; empty where it follows the arm.  `asked`: up to which encoder
     steps are to be counted; empty: as far as friction covers them.
     """
@@ -104,6 +105,7 @@ def asked_of(
     if held_to and asked:
         raise InputError("torque_held_up_to says the largest force already; leave largest_force out")
     needs_encoders(arm, asked)
+    arm = arm.at_motors
     return Question(arm=arm, wall=wall, rate=hertz, delay_samples=delay_samples, held_to=held_to, asked=asked)
 
 
@@ -184,7 +186,7 @@ def with_motion(
 ) -> EncoderSteps | None:
     """The steps with the smallest force at which a motion across their edges is known to take energy out."""
     chain, steps = with_encoders(arm), found.steps
-    if chain is None or steps is None or wall.clamped:
+    if chain is None or steps is None or wall.clamped or arm.transmissions:
         return steps  # a wall that never pulls has a normal, and the motion's forces may not be along it
     motion = first_motion(chain, wall, period, delay_samples, sites.joints, torque_held)
     return steps if motion is None else replace(steps, refuted=motion.largest_force, motion=motion)

@@ -33,7 +33,7 @@ from zwidth.passivity.workspace.mapped import (
     stiffness_factors,
 )
 from zwidth.passivity.workspace.question import Counting, Forces, Question, asked_of, counting, with_motion
-from zwidth.passivity.workspace.verdict import Additions, Workspace
+from zwidth.passivity.workspace.verdict import OF_JOINTS_THAT_GIVE_WAY, Additions, Workspace
 from zwidth.quantity.exact import RealLike
 
 _OUTSIDE = "a reading may be outside the region, and one step around it nothing is proved"
@@ -109,8 +109,9 @@ def workspace(
         encoder=found.encoder,
         forces=limits,
         why_ideal=(count.reason or _OUTSIDE) if any(arm.resolution) else "",
-        can_be_refuted=arm.joint_count <= n,
+        can_be_refuted=arm.joint_count <= n and not arm.transmissions,
         has_friction=any(arm.coulomb_friction),
+        gives_way=bool(arm.transmissions),
     )
     return Workspace(
         outcome=outcome,
@@ -154,6 +155,7 @@ class Covers(NamedTuple):
     why_ideal: str  # why the steps of an arm that has some are not counted
     can_be_refuted: bool
     has_friction: bool  # whether any Coulomb friction is given
+    gives_way: bool  # whether joints do between motor and link
 
 
 def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
@@ -186,12 +188,14 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
     else:
         text = (
             f"{part:.4g} % of the region are proved; at other points the condition fails, and no motion was "
-            "found that takes energy out."
+            f"{'looked for' if covers.gives_way else 'found that takes energy out'}."
         )
     if outcome in ("theorem", "undecided") and without:
         text += f" There is no certificate: {without}."
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
+    if covers.gives_way:
+        text += f" {OF_JOINTS_THAT_GIVE_WAY}"
     return f"{text} {_counted(covers, outcome)}{_beyond(covers, steps, outcome)}"
 
 

@@ -20,13 +20,19 @@ from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Outcome, Scope, Torque
+from zwidth.passivity.scope import Outcome, Scope, Torque, Transmission
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
 from zwidth.quantity.answered import answered, answers, known
 
 if TYPE_CHECKING:
     import xarray
+
+
+OF_JOINTS_THAT_GIVE_WAY = (
+    "What is proved holds for every stiffness of the joints and whatever the links do, by what the motors "
+    "feel of friction; the postures are those that the encoders read."
+)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -131,6 +137,7 @@ class Workspace(PassivityAnswer):
             largest_moment=limits[1],
             torque="held" if self.torque == "held" else follows,
             region=self.region,
+            transmission=between(self.arm),
             motion="linear",
         )
 
@@ -179,10 +186,20 @@ class Workspace(PassivityAnswer):
         }
 
 
+def between(arm: Arm) -> Transmission:
+    """What of motors, encoders and links a verdict on an arm is about."""
+    return "any" if arm.transmissions else "rigid"
+
+
 def arm_document(arm: Arm) -> dict[str, Any]:
-    """Its name, and what is to be known of damping that a description gave."""
+    """Its name, where a description's damping is from, and of joints that give way what motors feel."""
     source = arm.damping_source if isinstance(arm, DescribedArm) else ""
-    return {"arm": arm.name, **({"joint_damping_source": source} if source else {})}
+    felt = np.asarray(arm.at_motors.damping).tolist() if arm.transmissions else None
+    return {
+        "arm": arm.name,
+        **({"joint_damping_source": source} if source else {}),
+        **({"joint_damping_that_motors_feel_N_m_s_rad": felt} if felt else {}),
+    }
 
 
 def wall_document(wall: Wall | MatrixWall, coordinates: int, turns: int) -> dict[str, Any]:
