@@ -285,7 +285,8 @@ def test_with_the_other_plant_the_answers_are_others(names):
 
 
 def test_its_plant_is_read(names, tmp_path):
-    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    text, transmission = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    assert transmission.startswith("[arm.transmission]")
     pairs = names["gains"].pairs(plant=written(tmp_path, "my-arm.toml", text))
     assert [float(pair.sides[0].damping) for pair in pairs.values()][:3] == [0.5, 0.4, 0.6]
 
