@@ -19,7 +19,7 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 LINES = {
     "beside the rooms": 929,
     "checker": 10404,
-    "cli": 10445,
+    "cli": 10446,
     "data": 22323,
     "links": 2317,
     "loop": 6595,
@@ -33,7 +33,7 @@ LINES = {
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 133410
+IN_ALL = 133411
 PHYSICS = 63928
 """Lines of quantity, model, loop, passivity and checker."""
 

@@ -19,8 +19,9 @@ from zwidth.model.device.rotary import ROTARY
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, option_keys
-from zwidth.model.specification.read import BETWEEN, DEVICE_KEYS
+from zwidth.model.specification.read import DEVICE_KEYS
 from zwidth.model.specification.table import quoted, suggestion
+from zwidth.model.specification.values import BETWEEN
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import parameters_of
 
