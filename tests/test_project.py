@@ -289,7 +289,7 @@ def _help(*command: str) -> str:
 
     said = StringIO()
     with redirect_stdout(said), suppress(SystemExit):
-        main([*command, "--help"])
+        main([*command, "--help", *(["all"] if command else [])])
     return said.getvalue()
 
 

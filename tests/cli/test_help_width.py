@@ -17,7 +17,7 @@ from zwidth.cli.output import width_of, wrapped
 def test_help_fits_and_every_example_is_whole(command, width, monkeypatch, run):
     """No line is too long; a shell that reads an example has the words of the table of commands."""
     monkeypatch.setenv("COLUMNS", str(width))
-    out = run(f"{command} --help").out
+    out = run(f"{command} --help{' all' * bool(command)}").out
     assert max(map(width_of, out.splitlines())) <= width
     if command:
         _, examples, shown = out.rpartition("example")
@@ -29,13 +29,32 @@ def test_help_fits_and_every_example_is_whole(command, width, monkeypatch, run):
         assert not examples or texts[0] == texts[1]
 
 
+_OPTION = re.compile(r"^  (?:-\w[^,]*, )?(--?[a-z][\w.-]*)", re.MULTILINE)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_begins_with_what_a_first_question_needs(command, run):
+    """At most 30 options; `--help all` has these and as many more as it is said to have."""
+    first, every = (run(f"{command} --help{more}").out.split("\nexample")[0] for more in ("", " all"))
+    few, many = (set(_OPTION.findall(text)) for text in (first, every))
+    assert len(few) <= 30
+    assert few <= many
+    told = re.search(r"^(\d+) more options, by subject: zwidth (\w+) --help all$", first, re.MULTILINE)
+    assert (int(told[1]) if told else 0) == len(many - few)
+
+
+def test_after_help_stands_all_or_nothing(run):
+    """Another word is refused, not ignored."""
+    assert "stands all, or nothing, got 'drive'" in run("check --help drive", status=2).err
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_name_and_no_value_of_the_help_is_in_two(command, monkeypatch, run):
     """In a narrow terminal it has the words that it has in a wide one, and each quoted value in one line."""
     shown = []
     for width in ("60", "100"):
         monkeypatch.setenv("COLUMNS", width)
-        shown.append(run(f"{command} --help").out.replace("\\\n", ""))
+        shown.append(run(f"{command} --help all").out.replace("\\\n", ""))
     narrow, wide = shown
     assert sorted(narrow.split()) == sorted(wide.split())
     quotations = re.findall(r"(?<!\w)'[^'\n]+'", wide)

@@ -193,7 +193,7 @@ def test_devices_as_json(run):
 
 
 def test_help_names_every_parameter_with_its_unit(run):
-    out = run("check --help").words
+    out = run("check --help all").words
     for parameter in (*device_parameters(), *environment_parameters()):
         assert f"{parameter.option} {parameter.metavar} {parameter.help}" in out
     for line in ("--help", "devices --help", "verify -h"):

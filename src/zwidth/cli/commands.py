@@ -11,7 +11,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from zwidth.cli.parsing import add_options
+from zwidth.cli.parsing import Helping, add_options
 
 
 class Command(NamedTuple):
@@ -29,6 +29,9 @@ def configure(name: str, parser: argparse.ArgumentParser) -> None:
     module = _module(name)
     if hasattr(module, "USAGE"):
         parser.usage = f"%(prog)s {module.USAGE}"
+    parser.add_argument(
+        "-h", "--help", action=Helping, nargs="?", metavar="all", help="the first options, or all, and leave"
+    )
     add_options(parser, module.OPTIONS)
 
 

@@ -108,6 +108,7 @@ def _parser(argv: Sequence[str]) -> Parser:
             epilog=command.epilog,
             formatter_class=Help,
             allow_abbrev=False,
+            add_help=False,
         )
         if name in argv:  # the many options of the others need not be built
             configure(name, child)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -72,11 +72,28 @@ def both_environments() -> Iterator[Parameter]:
         yield parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
 
 
-DEVICE = ("device: override what SOURCE says, or replace it", device_parameters)
+def _part(
+    parameters: Callable[[], Iterable[Parameter]], wanted: Callable[[str], bool]
+) -> Callable[[], list[Parameter]]:
+    return lambda: [one for one in parameters() if wanted(one.key)]
+
+
+def _of_a_wall(key: str) -> bool:
+    return key.removeprefix(BEHIND) in ("type", "stiffness", "virtual_damping", "velocity_filter", "clamped")
+
+
+DEVICE = (
+    "device: override what SOURCE says, or replace it",
+    _part(device_parameters, lambda key: not key.startswith(BETWEEN)),
+    "cable, belt or gear between motor and hand",
+    _part(device_parameters, lambda key: key.startswith(BETWEEN)),
+)
 PARAMETERS = (
     *DEVICE,
     f"environment: a key of the environment behind a coupling is written --{BEHIND}stiffness, …",
-    both_environments,
+    _part(both_environments, _of_a_wall),
+    "environment of another type than wall",
+    _part(both_environments, lambda key: not _of_a_wall(key)),
 )
 """Every parameter of a device, and of an environment."""
 

@@ -102,6 +102,41 @@ class Once(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
+FIRST = (
+    *("mass", "damping", "coulomb_friction", "resolution", "rate", "delay", "force_limit"),
+    *("type", "stiffness", "virtual_damping", "link_delay", "duration"),
+    *("operator", "operator.force", "operator.speed", "connection", "connection.port", "safety.force"),
+)
+"""The parameters that a first question needs; the others stand under `--help all`."""
+
+
+class Helping(argparse.Action):
+    """`--help`: the options that a first question needs; `--help all`: every one, by subject."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        """Print it and leave."""
+        if values not in (None, "all"):
+            raise InputError(f"after {option_string} stands all, or nothing, got {values[:40]!r}")
+        rare = [] if values else [a for a in parser._actions if getattr(a, "rare", False)]
+        more = sum(action.help != argparse.SUPPRESS for action in rare)
+        for action in rare:
+            action.help = argparse.SUPPRESS
+        for group in parser._action_groups:  # its title goes with the last of its options
+            if all(action.help == argparse.SUPPRESS for action in group._group_actions):
+                group.description = None
+        if more:
+            told = f"{more} more options, by subject: {parser.prog} --help all"
+            parser.epilog = "\n\n".join(filter(None, (told, parser.epilog)))
+        parser.print_help()
+        parser.exit()
+
+
 class Parameter(NamedTuple):
     """One parameter as an option: its key, what stands for its value, its help."""
 
@@ -126,6 +161,7 @@ A text begins a group, "title" or "title: what it is of".  A mapping has options
     "-o FILE"           --save too; "-o FILE!" must be there
     "log=LOG"           what has no name of an option; LOG? may be missing, LOG* any number, LOG+ at least one
     "--rate 1/T > sample_rate"   another name in the result
+    "(--rounds N)"      one that `--help all` alone names
 
 A function makes such a mapping, or parameters, once the command is used.
 """
@@ -146,9 +182,10 @@ def add_options(parser: argparse.ArgumentParser, options: Options) -> None:
         else:
             for own in found:
                 meaning = own.help.replace("%", "%%")
-                group.add_argument(
+                action = group.add_argument(
                     own.option, dest=dest_of(own.key), metavar=own.metavar, action=Once, help=meaning
                 )
+                action.rare = own.key not in FIRST
 
 
 def dest_of(key: str) -> str:
@@ -157,21 +194,25 @@ def dest_of(key: str) -> str:
 
 
 def _add(group: Any, words: str, meaning: str) -> None:
+    rare, words = words.startswith("("), words.strip("()")
     words, _, dest = words.partition(" > ")
     name, _, metavar = words.partition(" ")
     more = {"dest": dest} if dest else {}
     if not name.startswith("-"):
         dest, _, metavar = name.partition("=")
         count = metavar[-1] if metavar[-1] in "?*+" else None
-        group.add_argument(dest, metavar=metavar.rstrip("?*+"), nargs=count, help=meaning)
+        action = group.add_argument(dest, metavar=metavar.rstrip("?*+"), nargs=count, help=meaning)
     elif not metavar:
-        group.add_argument(name, action="store_true", help=meaning, **more)
+        action = group.add_argument(name, action="store_true", help=meaning, **more)
     elif metavar.endswith("..."):
-        group.add_argument(name, metavar=metavar[:-3], action="append", help=meaning, **more)
+        action = group.add_argument(name, metavar=metavar[:-3], action="append", help=meaning, **more)
     else:
         names = ("-o", "--save") if name == "-o" else (name,)
         needed = {"required": True} if metavar.endswith("!") else {}
-        group.add_argument(*names, metavar=metavar.rstrip("!"), action=Once, help=meaning, **more, **needed)
+        action = group.add_argument(
+            *names, metavar=metavar.rstrip("!"), action=Once, help=meaning, **more, **needed
+        )
+    action.rare = rare
 
 
 def heed_angles(arguments: argparse.Namespace) -> None:

@@ -70,7 +70,7 @@ OPTIONS = (
         "map of two, such as 20000",
         "--null-stiffness VALUE": "asks about the spring of the joints in the null space of a redundant arm, "
         "too [N*m/rad]; wall: with its damping as in the .yaml of --wall",
-        **_OF_NULL_SPACE,
+        **{f"({words})": meaning for words, meaning in _OF_NULL_SPACE.items()},
         "--pose": "the hand turns with the end, and the wall resists that too",
         "--share S": "with -o FILE.yaml: of the joints' damping, that the impedance may use (default: 0.8)",
     },
