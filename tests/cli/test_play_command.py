@@ -49,7 +49,7 @@ def test_a_browser_opens_the_page(run, found, monkeypatch):
     [
         ("-o wall.png", ".html"),
         ("-o there.html", "exists"),
-        ("--damping '0.1 .. 0.2'", "a single value, the one that you take, for damping"),
+        ("--mass '0.1 .. 0.2 kg'", "a single value, the one that you take, for mass"),
         ("--delay '1000 s'", "at most 10 s"),
     ],
 )

@@ -59,7 +59,6 @@ REFUSED = {
         "--effort 0": "effort must be > 0",
         "--tolerance 2": "tolerance must be a number from",
         "--resolution 0 --penetration '1 mm'": "resolution is 0",
-        "--damping '0.1 .. 0.2'": "no single value",
         "--plot limit.txt": ".png",
         "--plot same.svg -o same.svg": "same file",
     },

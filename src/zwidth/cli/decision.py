@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.options import overrides
@@ -46,6 +47,17 @@ def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
     loop = Specification(given.device, rendered, given.ranges)
     return Asked(loop, device_table, environment_table, tables.get("law"))
+
+
+def of_one_value(loop: Specification) -> Specification:
+    """The loop with single values in the place of intervals, and a line to people about it."""
+    from zwidth.cli.output import print_message
+    from zwidth.model.device.worst_end import at_worst_end
+
+    device, told = at_worst_end(loop.device)
+    if told:
+        print_message(told)
+    return replace(loop, device=device)
 
 
 def exit_status(outcome: str) -> int:

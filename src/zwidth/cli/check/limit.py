@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.decision import asked
+from zwidth.cli.decision import asked, of_one_value
 from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output, overrides
 from zwidth.cli.output import give_out, print_message, targets
 from zwidth.cli.parsing import dest_of
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if _has_no_wall(arguments):
         setattr(arguments, dest_of("stiffness"), "0")  # what is sought: the search begins at 2b/T
-    loop = asked(arguments).loop
+    loop = of_one_value(asked(arguments).loop)
     if arguments.parameter is None:
         _refuse_without_stiffness(loop)
     parameter = named(arguments.parameter or "stiffness")

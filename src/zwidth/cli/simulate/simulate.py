@@ -9,6 +9,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.decision import of_one_value
 from zwidth.cli.options import IN_FULL, LAW, PARAMETERS, given, output, overrides
 from zwidth.cli.output import PICTURES, print_json, say_written, target
 from zwidth.cli.simulate.tables import follower_parameters, operator_parameters, simulation_parameters
@@ -118,7 +119,7 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
             "the loop of one device has no follower: give a file with [leader], [follower] and [coupling], "
             "or leave out what holds the follower"
         )
-    loop = specified(tables, overrides(arguments))
+    loop = of_one_value(specified(tables, overrides(arguments)))
     environment = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
     words = given(arguments, keys)

@@ -67,13 +67,13 @@ def _temporary() -> Path:
 
 def _loops(arguments: argparse.Namespace) -> list[Played]:
     """The loop that was asked for; those to begin with where none was."""
-    from zwidth.cli.decision import asked, decided
+    from zwidth.cli.decision import asked, decided, of_one_value
     from zwidth.model.specification.read import Specification
     from zwidth.show.explorer.play import played, presets
 
     if not (arguments.sources or overrides(arguments) or arguments.law):
         return presets()
-    loop = asked(arguments).loop
+    loop = of_one_value(asked(arguments).loop)
     return [
         played(loop.device, loop.environment, decide=lambda device, law: decided(Specification(device, law)))
     ]

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.decision import of_one_value
 from zwidth.cli.options import IN_FULL, LAW, PARAMETERS, output, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
@@ -86,6 +87,7 @@ def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Spe
     loop = specified(
         tables, {**beside, **({"motion": "rotary"} if radius is not None and not turning else {})}
     )
+    loop = of_one_value(loop)
     return loop, radius_of(loop.device, radius) if loop.device.motion == "rotary" else None
 
 

@@ -1,0 +1,32 @@
+"""Commands that need one value take the worst end of an interval, and say so."""
+
+import pytest
+
+import zwidth as zw
+from zwidth.model.device.worst_end import at_worst_end
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "limit --json",
+        "simulate --operator typical --duration '0.2 s'",
+        "compare --laws half-sample-prediction",
+        "play -o page.html --no-browser",
+    ],
+)
+def test_a_delay_of_which_the_ends_are_known(line, run):
+    """The sample of a board whose delay lies between two."""
+    run("examples .")
+    command, _, rest = line.partition(" ")
+    told = run(f"{command} hapkit.toml {rest}").err.replace("\n", " ")
+    assert "the worst end is taken, for one value is needed: delay 250 µs" in told
+
+
+def test_the_limit_is_that_of_the_worst_end(run):
+    """Least friction, longest delay; a single value is never replaced."""
+    line = "limit --rate '1 kHz' --stiffness 100 --json"
+    found = run(f"{line} --damping '0.2 .. 0.3' --delay '0 .. 1 ms'").json
+    assert found == run(f"{line} --damping 0.2 --delay '1 ms'").json
+    device = zw.Device(damping=0.2, sample_period=0.001, mass=(1, 2))
+    assert at_worst_end(device) == (device, "")
