@@ -209,6 +209,15 @@ def seen_at_motor(device: Device) -> Device:
     return motor.replace(damping=Exact(sums[0]) if sums[0] == sums[1] else Interval(*sums))
 
 
+def as_one_body(device: Device) -> Device:
+    """What proves for every transmission: what is seen at the motor; with the encoder elsewhere nothing."""
+    if device.transmission is None:
+        return device
+    if device.transmission.encoder == "motor":
+        return seen_at_motor(device)
+    return device.motor_side.replace(damping=0, coulomb_friction=0)
+
+
 def check_transmission(device: Device, law: Environment, asked: Contact, judge: Judge) -> TransmissionVerdict:
     """Decide a device with a transmission; `judge` has the verdict on a device without one."""
     given = device.transmission
