@@ -6,6 +6,9 @@ import pytest
 
 import zwidth as zw
 from zwidth.checker import judge
+from zwidth.machine.servo.checkup import doctor
+from zwidth.machine.servo.lateness import stiffness_cost
+from zwidth.passivity.transmission import as_one_body
 
 CABLE = zw.Transmission(stiffness=28657, handle_damping="0.09")
 IDEAL = {"coulomb_friction": 0, "resolution": 0, "delay": 0}
@@ -75,3 +78,11 @@ def test_contact_kept_is_of_one_mass_too():
     assert bracket.proved_passive <= 200 <= bracket.proved_active
     with pytest.raises(zw.InputError, match="no contact that is kept"):
         zw.limit(paddle, zw.Wall(100), contact="kept", speed=1)
+
+
+def test_lateness_costs_what_holds_for_every_cable():
+    """2b₁/(T + L); with the encoder at the handle that proves nothing, which is said before the wait."""
+    assert stiffness_cost(as_one_body(DEVICE), zw.Wall(100), 0.0).nominal == 120
+    at_handle = DEVICE.replace(transmission=CABLE.replace(encoder="handle"))
+    with pytest.raises(zw.InputError, match="encoder at the handle"):
+        doctor(at_handle, zw.Wall(100), duration=60)

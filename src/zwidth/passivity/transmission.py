@@ -124,6 +124,8 @@ class TransmissionVerdict(Verdict):
         proved = [self.max_stiffness_any_transmission, own]
         return max((k for k in proved if k is not None), default=None)
 
+    stiffest = max_stiffness
+
     @property
     @answers(
         "where the motor swings on its transmission while the hand holds still; null where not known",
