@@ -113,3 +113,13 @@ def test_an_encoder_on_the_motor(run, refused):
     assert 'counts_per_turn = "17101"' in Path("new.toml").read_text(encoding="utf-8")
     told = refused(f"new device new.toml {typed} --force --encoder '0.09 deg x 17.45'")
     assert "counts in a turn of the motor" in told
+
+
+def test_devices_on_cables_have_the_limit_of_every_cable(run, tmp_path):
+    """2b₁/T = 120 N/m, whatever the outcome at this wall."""
+    table = '[device]\nmass = "30 g"\ndamping = 0.06\nrate = 1000\n[device.transmission]\nstiffness = '
+    for name, stiffness in (("soft", 2132), ("stiff", 28657)):
+        (tmp_path / f"{name}.toml").write_text(f"{table}{stiffness}\nhandle_damping = 0.09\n", "utf-8")
+    said = run(f"each {tmp_path}/soft.toml {tmp_path}/stiff.toml --stiffness 125", 1).words
+    assert "passive on every one of them up to 120 N/m" in said
+    assert "active on 1, passive in contact on 1 of 2 devices" in said

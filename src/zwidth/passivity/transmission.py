@@ -124,6 +124,8 @@ class TransmissionVerdict(Verdict):
         proved = [self.max_stiffness_any_transmission, own]
         return max((k for k in proved if k is not None), default=None)
 
+    stiffest = max_stiffness
+
     @property
     @answers(
         "where the motor swings on its transmission while the hand holds still; null where not known",
@@ -207,6 +209,15 @@ def seen_at_motor(device: Device) -> Device:
         for b, c, h in zip(*map(ends, (motor.damping, given.damping, given.handle_damping)), strict=True)
     ]
     return motor.replace(damping=Exact(sums[0]) if sums[0] == sums[1] else Interval(*sums))
+
+
+def as_one_body(device: Device) -> Device:
+    """What proves for every transmission: what is seen at the motor; with the encoder elsewhere nothing."""
+    if device.transmission is None:
+        return device
+    if device.transmission.encoder == "motor":
+        return seen_at_motor(device)
+    return device.motor_side.replace(damping=0, coulomb_friction=0)
 
 
 def check_transmission(device: Device, law: Environment, asked: Contact, judge: Judge) -> TransmissionVerdict:

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import asked, of_one_value
-from zwidth.cli.options import IN_FULL, LAW, LOOP, PARAMETERS, output, overrides
+from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output, overrides
 from zwidth.cli.output import give_out, print_message, targets
 from zwidth.cli.parsing import dest_of
 from zwidth.errors import InputError
@@ -31,11 +31,11 @@ BOTH, ONE_OR_NONE = 0, 3
 
 
 USAGE = (
-    "[SOURCE ...] [--law NAMES] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
+    "[SOURCE ...] [--law NAMES] [--contact KIND] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
     "[--PARAMETER VALUE ...] [--all] [--json] [--plot FILE] [-o FILE] [--force]"
 )
 OPTIONS = (
-    {"sources=SOURCE*": f"{LOOP}, and [[law]] tables", **LAW},
+    {"sources=SOURCE*": f"{LOOP}, and [[law]] tables", **LAW, **CONTACT},
     "search",
     {
         "--parameter NAME": "which parameter, named as its option is (default: stiffness)",
@@ -55,7 +55,7 @@ OPTIONS = (
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
+    """`zwidth limit`: 0 if both sides of the limit were found, or there is none, else 3."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if _has_no_wall(arguments):
         setattr(arguments, dest_of("stiffness"), "0")  # what is sought: the search begins at 2b/T
@@ -74,7 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
         print_bracket(bracket, loop, arguments.in_full)
 
     give_out(bracket, save, plot, arguments.json, report, partial(_json, bracket))
-    return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
+    both = bracket.proved_passive is not None and bracket.proved_active is not None
+    return BOTH if both or bracket.every_value else ONE_OR_NONE
 
 
 def _has_no_wall(arguments: argparse.Namespace) -> bool:
@@ -134,6 +135,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     options: dict[str, Any] = {
         "force_limit": arguments.count_force_limit,
         "force_resolution": arguments.count_force_resolution,
+        "contact": contact(arguments),
     }
     for name, unit in units.items():
         typed = getattr(arguments, name)

@@ -70,6 +70,8 @@ def _of_every_hand(bracket: Bracket) -> list[Row]:
 
 
 def _headline(bracket: Bracket) -> Padding:
+    if bracket.every_value:
+        return headline("NO LIMIT", "green", f"{_name(bracket)}: every value is proved passive.")
     sides = [side is not None for side in (bracket.proved_passive, bracket.proved_active)]
     badge, colour = {2: ("BRACKETED", "green"), 1: ("ONE SIDE", "yellow"), 0: ("UNDECIDED", "yellow")}[
         sum(sides)
@@ -142,4 +144,6 @@ def _name(bracket: Bracket) -> str:
     """The parameter as people say it; damping is the device's, virtual damping the environment's."""
     owner, _, key = bracket.parameter.partition(".")
     name = "virtual_damping" if (owner, key) == ("environment", "damping") else key
+    if owner == "transmission":
+        name = f"{owner} {key}"
     return in_words(name)

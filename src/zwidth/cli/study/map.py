@@ -209,10 +209,10 @@ _BROKEN = ("passive", "quiet")
 
 
 def _region(name: str, found: xr.Dataset) -> str:
-    if name == "passive":
-        return "passive, every hand"
-    if name == "passive_sustained":
-        return "passive, contact kept"
+    if name in ("passive", "passive_sustained"):
+        this = "" if found.attrs["transmission"] != "as given" else ", this transmission"
+        any_ = "" if found.attrs["transmission"] == "rigid" else ", any transmission"
+        return f"passive, every hand{any_}" if name == "passive" else f"passive, contact kept{this or any_}"
     if name == "quiet":
         speed = told_quantity(found["quiet"].attrs["speed"], "velocity", found.attrs["motion"], 4)
         return f"no gain up to {speed}"

@@ -221,7 +221,7 @@ def _no_number(arguments: argparse.Namespace, key: str) -> InputError:
 
 
 _OWN = {
-    "contact": ("check",),
+    "contact": ("check", "limit"),
     "hands": ("check",),
     "parameter": ("limit",),
     "tolerance": ("limit",),
@@ -261,7 +261,7 @@ def _wall(arguments: argparse.Namespace, of: str, begun: Mapping[str, str]) -> A
 
     device, law = _loop(arguments, read_tables(arguments.sources, WITH_LAWS), begun)
     options: dict[str, Any] = {}
-    if of == "check" and arguments.contact is not None and contact(arguments) == "kept":
+    if arguments.contact is not None and contact(arguments) == "kept":
         options["contact"] = "kept"
     if arguments.hands is not None:
         from zwidth.cli.decision import named_hands

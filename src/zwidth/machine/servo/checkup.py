@@ -15,6 +15,7 @@ from zwidth.machine.servo.priority import PRIORITY, Granted, memory_limit
 from zwidth.model.device import Device
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import Environment
+from zwidth.passivity.transmission import as_one_body
 from zwidth.progress import progress_bar
 from zwidth.quantity.answered import answered
 from zwidth.quantity.documented import Documented
@@ -109,7 +110,8 @@ def doctor(
     Parameters
     ----------
     device, environment
-        Of which to say what the lateness costs in stiffness; without an environment a spring.
+        Of which to say what the lateness costs in stiffness; without an environment a spring. With a
+        transmission it is of what the motor feels, whatever stands behind it.
     duration
         How long [s]: half of it with real-time priority, where that is granted, in turns of a few seconds.
     sample_period
@@ -134,7 +136,12 @@ def doctor(
         )
     law = None
     if device is not None:
-        device = device.replace(sample_period=period)
+        if device.transmission is not None and device.transmission.encoder == "handle":
+            raise InputError(
+                "what lateness costs is told of the motor's friction, and that proves nothing with the encoder "
+                "at the handle: give --rate alone, in Python sample_period"
+            )
+        device = as_one_body(device.replace(sample_period=period))
         law = environment or Wall(stiffness=1)
         stiffness_cost(device, law, 0.0)  # what it cannot be told of is refused before the wait
     elif environment is not None:
@@ -158,7 +165,7 @@ def doctor(
 def _period(given: RealLike | None, device: Device | None) -> Exact:
     value = given if given is not None else _DEFAULT_PERIOD
     if given is None and device is not None:
-        value = Exact(device.exact("sample_period"))
+        value = Exact(device.motor_side.exact("sample_period"))
     period: Exact = read_number(
         value, GLOSSARY["sample_period"], "sample_period", bound="> 0", why="a step takes time"
     )

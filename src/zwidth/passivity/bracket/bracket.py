@@ -71,6 +71,10 @@ class Bracket(Result):
         default=False,
     )
 
+    every_value: bool = known(
+        "whether every value is proved passive: what proves this one proves them", default=False
+    )
+
     @property
     @answers()
     def hand(self) -> str:
@@ -101,7 +105,9 @@ class Bracket(Result):
 
     def describe(self) -> str:
         """The bracket in a sentence."""
-        name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
+        name = in_words(self.parameter).replace("environment.", "").replace(".", " ")
+        if self.every_value:
+            return f"{name}: every value is proved passive"
         if self.proved_passive is None and self.proved_active is None:
             given = "in the time given" if self.cut_by_time else "with the effort given"
             return f"{name}: nothing was decided {given}"
@@ -170,6 +176,16 @@ class Parameter(NamedTuple):
     now: float
     change: Callable[[Exact], Loop]
     more_is_safer: bool = False
+    least: Exact | None = None  # where what is proved may be proved of every value
+
+    def proves_more(self, verdict: Any) -> bool:
+        """Whether a proof at the least value is one of every other.
+
+        More of b₂ is always safer; of the others it is where what the motor feels pays for all.
+        """
+        if getattr(verdict, "outcome", "") != "passive":
+            return False
+        return self.name == "transmission.handle_damping" or verdict.scope.transmission == "any"
 
 
 def parameter_of(device: Device, environment: Environment, name: str) -> Parameter:
@@ -226,7 +242,9 @@ def _of_device(device: Device, environment: Environment, key: str) -> Parameter:
         return device.replace(**{key: value}), environment
 
     now = float(known) or _guess(device, key)
-    return _parameter(f"device.{key}", device.unit(key), now, change)
+    found = _parameter(f"device.{key}", device.unit(key), now, change)
+    behind = device.transmission is not None and key == "damping"  # what lets through much may do without
+    return found._replace(least=Exact(0)) if behind else found
 
 
 def _of_transmission(device: Device, environment: Environment, key: str) -> Parameter:
@@ -243,7 +261,8 @@ def _of_transmission(device: Device, environment: Environment, key: str) -> Para
         return device.replace(transmission=given.replace(**{key: value})), environment
 
     unit = device.unit("stiffness" if key == "stiffness" else "damping")
-    return Parameter(f"transmission.{key}", unit, float(now) or 1.0, change, True)
+    least = now if key == "stiffness" else Exact(0)
+    return Parameter(f"transmission.{key}", unit, float(now) or 1.0, change, True, least)
 
 
 def _parameter(name: str, unit: str, now: float, change: Callable[[Exact], Loop]) -> Parameter:

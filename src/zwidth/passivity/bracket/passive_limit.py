@@ -16,6 +16,7 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.bracket.bracket import Bracket, parameter_of, refuse_without_part
 from zwidth.passivity.bracket.search import NOTHING, Found, Search, approach, is_stepped
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.scope import Contact, as_contact
 from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
 from zwidth.passivity.storage.chain_table import DoesNotClose
@@ -43,14 +44,16 @@ def passive_limit(
     effort: float = EFFORT,
     seconds: float | None = None,
     iterate: bool = True,
+    contact: str = "made and broken",
     progress: Callable[[int, int], None] | None = None,
     told: Callable[[float], None] | None = None,
 ) -> Bracket:
     """How far a parameter may go: proved passive on one side, refuted by a motion on the other.
 
-    Contact is made and broken at will.  Without bounds on the hand the closed
-    conditions are tried first, which cover every hand; where they end, and always
-    where the hand is bounded, values are iterated as in `available_storage`.
+    Contact is made and broken at will, unless `contact` says otherwise.  Without
+    bounds on the hand the closed conditions are tried first, which cover every hand;
+    where they end, and always where the hand is bounded, values are iterated as in
+    `available_storage`.
 
     Parameters
     ----------
@@ -77,6 +80,8 @@ def passive_limit(
         Time after which it is returned as well [s]; `cut_by_time` says where it was. Default: none.
     iterate
         False for closed conditions alone, however long they take.
+    contact
+        "kept": of hands that stay inside alone, as `check` takes it; by closed conditions.
     progress
         Told (loops decided, about how many there will be).
     told
@@ -101,8 +106,9 @@ def passive_limit(
     most = checked_effort(effort)
     time_limit(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
-    if not iterate or device.transmission is not None:  # of two bodies closed forms alone know
-        return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted)
+    of = as_contact(contact)
+    if not iterate or of == "kept" or device.transmission is not None:  # of these closed forms alone know
+        return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted, of)
     ideal = ends(device.resolution)[1] == 0
     in_a_chain = bool(laws_of(law))
     if not (ideal or in_a_chain or is_stepped(law)):
@@ -139,13 +145,14 @@ def passive_limit(
     return bounded_search.bracket()
 
 
-def _by_closed_forms(search: Search, counted: tuple[Any, ...]) -> Bracket:
+def _by_closed_forms(search: Search, counted: tuple[Any, ...], contact: Contact) -> Bracket:
     if any(entry is not None and entry is not False for entry in counted):
         raise InputError(
             "bounds on the hand, what the actuator gives and a friction curve are counted in by value "
-            "iteration alone: leave them out, or iterate"
+            "iteration alone, which knows no contact that is kept and no transmission: leave them out, or "
+            "iterate"
         )
-    every = search.by_closed_forms(every_law=True) or NOTHING
+    every = search.by_closed_forms(every_law=True, contact=contact) or NOTHING
     return search.bracket(every, (every.passive, every.active))
 
 

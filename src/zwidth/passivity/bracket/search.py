@@ -12,7 +12,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.passivity.bracket.bracket import Bracket, Parameter
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check, check_by_closed_forms
-from zwidth.passivity.scope import Scope
+from zwidth.passivity.scope import Contact, Scope
 from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import HandBounds
@@ -36,6 +36,7 @@ class Found(NamedTuple):
     witness: Gain | Witness | None
     scope: Scope
     violation: Violation | None = None
+    every: bool = False
 
 
 def is_stepped(law: Environment) -> bool:
@@ -45,6 +46,7 @@ def is_stepped(law: Environment) -> bool:
 
 _LOOP = 0.01  # what one loop is counted as at least: closed forms decide a hundred in a second
 
+MADE: Contact = "made and broken"
 NOTHING = Found(None, None, None, None, Scope())
 
 
@@ -65,14 +67,17 @@ class Search:
         self.evaluations = 0
         self.refused: dict[Exact, str] = {}
         """Why nothing decides a value."""
+        self.in_contact = False
+        """Whether a value is proved for a hand that stays inside, and for no other."""
         self.first = Exact(parameter.now or 1.0)
 
-    def by_closed_forms(self, every_law: bool = False) -> Found | None:
+    def by_closed_forms(self, every_law: bool = False, contact: Contact = MADE) -> Found | None:
         """What certificates and motions show of every hand; None for a law that has none.
 
         With `every_law` those without H(z) are looked at too.
         """
         verdicts: dict[Exact, Any] = {}
+        kept = contact == "kept"
 
         def verdict(value: Exact) -> Any:
             if value not in verdicts:
@@ -81,7 +86,9 @@ class Search:
                 closed = every_law or is_stepped(law) or device.transmission is not None
                 try:
                     verdicts[value] = (
-                        check(device, law, iterate=False) if closed else check_by_closed_forms(device, law)
+                        check(device, law, contact=contact, iterate=False)
+                        if closed
+                        else check_by_closed_forms(device, law, contact=contact)
                     )
                 except InputError as error:  # a delay of more samples than a proof has room for
                     if value == self.first:
@@ -90,18 +97,27 @@ class Search:
             return verdicts[value]
 
         def proved(value: Exact, _: float) -> bool:
-            return getattr(verdict(value), "outcome", "") == "passive"
+            outcome = getattr(verdict(value), "outcome", "")
+            self.in_contact |= outcome == "passive in contact"
+            return outcome == "passive"
 
         def refuted(value: Exact, _: float) -> bool:
-            return getattr(verdict(value), "outcome", "") == "active"
+            found = verdict(value)
+            broken = kept and getattr(found, "scope", NOTHING.scope).contact == MADE
+            return getattr(found, "outcome", "") == "active" and not broken
 
         try:
             verdict(self.first)
         except InputError:  # a law without H(z), which only value iteration can decide
             return None
-        sides = self.sides(proved, refuted)
-        approach(*sides, self.tolerance / 4, inf, self.effort)
-        passive, active = (side.good for side in sides)
+        least = self.parameter.least
+        every = least is not None and self.parameter.proves_more(verdict(least))
+        if every or (least == 0 and proved(least, inf)):
+            passive, active = least, None
+        else:
+            sides = self.sides(proved, refuted)
+            approach(*sides, self.tolerance / 4, inf, self.effort)
+            passive, active = (side.good for side in sides)
         good = None if passive is None else verdict(passive)
         bad = None if active is None else verdict(active)
         known = next((each for each in (good, bad) if each is not None), verdict(self.first))
@@ -110,11 +126,17 @@ class Search:
         scope = known.scope
         if bad is not None and bad.scope.transmission == "as given":  # what holds for any holds for this one
             scope = scope.replace(transmission="as given")
-        return Found(passive, active, proof, motion, scope, violation)
+        return Found(passive, active, proof, motion, scope, violation, every)
 
-    @property
-    def beyond(self) -> str:
-        """Why no value further on was decided."""
+    def beyond(self, found: Found) -> str:
+        """Why no value further on was decided, or what to ask besides."""
+        name = self.parameter.name
+        if found.passive and not found.every and name in ("transmission.stiffness", "transmission.damping"):
+            return f"a larger one is not always safer: zwidth sweep --vary {name}=LOW:HIGH:COUNT asks at many"
+        if found.every or None not in (found.passive, found.active):
+            return ""
+        if found.passive is None and self.in_contact:
+            return 'of a hand that stays inside more is proved: --contact kept, in Python contact="kept"'
         if not self.refused:
             return ""
         value = min(self.refused, key=lambda each: abs(log2(each / self.first)))
@@ -142,8 +164,9 @@ class Search:
             storage,
             bounds,
             found.violation,
-            self.beyond if None in (found.passive, found.active) else "",
+            self.beyond(found),
             self.effort.is_cut,
+            found.every,
         )
 
     def sides(self, proved: Holds, refuted: Holds) -> tuple[Side, Side]:

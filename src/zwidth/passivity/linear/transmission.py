@@ -22,7 +22,7 @@ n and over λ = 0, hyperbolic in a T and rational in z, so that the criterion ti
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -96,9 +96,17 @@ class Elastic:
 
     def value(self, cosine: Fraction) -> arb:
         """The criterion times q |D|² at cos θ."""
+        loop = self.loop
+        x, z, squared, force, scale = self.sums(cosine)
+        force *= _at(loop.numerator, z) * z**loop.whole_delay * (1 - z)
+        law, law_size = _at(loop.denominator, z), (1 - x) * 2 * _size(_at(loop.numerator, z))
+        return (_size(law + force) - squared * law_size) * scale
+
+    def sums(self, cosine: Fraction) -> tuple[arb, acb, arb, acb, arb]:
+        """cos θ, z⁻¹, γ_a γ_q, C and q: on no law do they depend, but for its part of a delay."""
         forms, loop = self._forms, self.loop
         x = ball(cosine)
-        z = acb(x, -(1 - x * x).sqrt())  # z⁻¹
+        z = acb(x, -(1 - x * x).sqrt())
         sums = _Sums(forms[0], x, z)
         moved = [ball(f) for f in forms[2]]
         pulled, read = (
@@ -107,9 +115,7 @@ class Elastic:
         delay = ball(loop.part_delay)
         even = sums.over([moved[0], -moved[2], arb(0)], delay, False)
         odd = sums.over([moved[1], -moved[3], arb(0)], delay, True)
-        force = _at(loop.numerator, z) * z**loop.whole_delay * (1 - z)
-        law, law_size = _at(loop.denominator, z), (1 - x) * 2 * _size(_at(loop.numerator, z))
-        return (_size(law - force * (even + odd) / 2) - pulled * read * law_size) * sums.scale
+        return x, z, pulled * read, -(even + odd) / 2, sums.scale
 
     @property
     def degree(self) -> int:
@@ -120,19 +126,7 @@ class Elastic:
     @cached_property
     def polynomial(self) -> tuple[fmpz_poly, int]:
         """A whole polynomial p with p 2^−shift a hair below the criterion on [−1, 1]."""
-        count = self.degree + 1
-        places = [Fraction(round(2**40 * cos(pi * (i + 0.5) / count)), 2**40) for i in range(count)]
-        with precision(self.bits):
-            values = [self.value(place) for place in places]
-            found = arb_poly.interpolate([ball(place) for place in places], values)
-            coefficients = [middle(found[i]) for i in range(count)]
-            largest = max(map(abs, coefficients))
-            if not largest:
-                return fmpz_poly([0]), 0
-            shift = 2 * _ROOM - _exponent(largest)
-            whole = [_times_power(c, shift) for c in coefficients]
-        whole[0] -= 1 << _ROOM
-        return fmpz_poly(whole), shift
+        return _below(self.value, self.degree, self.bits)
 
     @cached_property
     def held(self) -> bool | None:
@@ -245,6 +239,44 @@ def _decays(p: list[arb]) -> bool | None:
         p = [first * x - last * y for x, y in zip(p[:-1], p[:0:-1], strict=True)]
         p = [c / p[0] for c in p]
     return True
+
+
+def _below(value: Callable[[Fraction], arb], degree: int, bits: int) -> tuple[fmpz_poly, int]:
+    """The polynomial in cos θ with these values, a hair lower, its coefficients whole times 2^−shift."""
+    count = degree + 1
+    places = [Fraction(round(2**40 * cos(pi * (i + 0.5) / count)), 2**40) for i in range(count)]
+    with precision(bits):
+        values = [value(place) for place in places]
+        found = arb_poly.interpolate([ball(place) for place in places], values)
+        coefficients = [middle(found[i]) for i in range(count)]
+        largest = max(map(abs, coefficients))
+        if not largest:
+            return fmpz_poly([0]), 0
+        shift = 2 * _ROOM - _exponent(largest)
+        whole = [_times_power(c, shift) for c in coefficients]
+    whole[0] -= 1 << _ROOM
+    return fmpz_poly(whole), shift
+
+
+def holds_between(low: Elastic, half: Elastic, high: Elastic) -> bool:
+    """Whether what is proved of two walls is proved of all between; they differ in K alone, `half` is midway.
+
+    The criterion q is quadratic in K, and ≥ 0 between if 2 q(half) − (q(low) + q(high))/2, its middle
+    coefficient in Bernstein's form, is ≥ 0 too.  Then no pole gets to the unit circle, where q < 0.
+    """
+    three = low, half, high
+    if len({tuple(Fraction(c, e.loop.denominator[0]) for c in e.loop.denominator) for e in three}) > 1:
+        return False
+
+    def value(cosine: Fraction) -> arb:
+        first, midway, last = (e.value(cosine) / e.loop.denominator[0] ** 2 for e in three)
+        return 2 * midway - (first + last) / 2
+
+    degree, bits = (max(getattr(e, name) for e in three) for name in ("degree", "bits"))
+    try:
+        return not isinstance(prove_nonnegative(_below(value, degree, bits)[0]), Fraction)
+    except TooClose:
+        return False
 
 
 @dataclass(frozen=True)

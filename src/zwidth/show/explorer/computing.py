@@ -108,7 +108,7 @@ def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> T
     from zwidth.loop.simulate import simulated
     from zwidth.show.plots.traces import thinned
 
-    period = float(device.exact("sample_period"))
+    period = float(device.motor_side.exact("sample_period"))
     duration = min(DURATION, LONGEST_TOUCH, MOST_SAMPLES * period)
     trace = simulated(device, environment, hand, duration)
     times = trace["time"].values
@@ -138,7 +138,7 @@ def region_of(state: State) -> Region:
             "the region is of walls with a spring and a damper; choose the wall as environment, without laws"
         )
     stiffest = 2.5 * max(middle(wall.stiffness), _LEAST)
-    most = 2.5 * max(abs(middle(wall.damping)), 0.6 * float(loop.device.exact("damping")), _LEAST)
+    most = 2.5 * max(abs(middle(wall.damping)), 0.6 * float(loop.device.motor_side.exact("damping")), _LEAST)
     found = z_width(
         loop.device, (0, stiffest), (0, most), (CELLS, CELLS),
         velocity_filter=wall.velocity_filter, hands={}, workers=1, progress=lambda *_: None,
@@ -276,7 +276,7 @@ class Judged(NamedTuple):
 def judged_at_once(loop: Specification) -> Judged:
     """The verdict by closed forms, in milliseconds, where there is one."""
     device, law = loop.device, loop.environment
-    if not law.has_transfer_function or _is_large(loop):
+    if device.transmission is not None or not law.has_transfer_function or _is_large(loop):
         return Judged(loop, None, final=False)
     verdict = check_by_closed_forms(device, law)
     return Judged(loop, verdict, final=not has_gap(device, law, verdict))

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.model.device import Device
+from zwidth.model.device import Device, Transmission
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification.environments import TYPES
@@ -98,6 +98,12 @@ def device_controls(state: State, device: Device) -> tuple[Control, ...]:
         given = None if key in device.assumed else value
         bound = "> 0" if name == "rate" else own.bound
         found.append(_number(f"device.{path}", in_words(path), shape, given, device.motion, bound, more))
+    between = device.transmission
+    for key, own in parameters_of(Transmission).items() if between is not None else ():
+        if own.is_number:
+            path, label = f"device.transmission.{key}", f"transmission: {in_words(key)}"
+            given = getattr(between, key)
+            found.append(_number(path, label, own, given, device.motion, own.bound, False))
     order = [f"device.{'rate' if key == 'sample_period' else key}" for key in _FIRST]
     return tuple(sorted(found, key=lambda one: order.index(one.path) if one.path in order else len(order)))
 

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from urllib.parse import quote_plus, urlencode
 
 from zwidth.errors import InputError
-from zwidth.model.device import Device, catalogue, require_rigid
+from zwidth.model.device import Device, catalogue
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.environment import Environment
 from zwidth.model.specification.environments import build_environment
@@ -67,7 +67,6 @@ class State:
     @staticmethod
     def of(device: Device, environment: Environment) -> State:
         """The tables of a loop."""
-        require_rigid(device, "this page")
         return State(*tables(device, environment))
 
     def loop(self) -> Specification:

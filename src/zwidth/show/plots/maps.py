@@ -101,7 +101,9 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     figure = new_figure(12.4 if near is not None else 8.0, 4.6)
     axes = figure.subplots(1, 2 if near is not None else 1, squeeze=False)[0]
     draw_z_width(axes[0], found)
-    heading(axes[0], f"{found.attrs['device']}: stable with a known hand", parse_math=False)
+    hands = any(str(name).startswith("stable_") for name in found.data_vars)
+    title = "stable with a known hand" if hands else "passive walls"
+    heading(axes[0], f"{found.attrs['device']}: {title}", parse_math=False)
     note(axes[0], _free(found))
     if near is not None:
         draw_z_width(axes[1], near)
@@ -139,11 +141,12 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     found = _told(found)
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
+    apart = found.attrs.get("transmission", "rigid") != "rigid"
     speed = f"{number(found['quiet'].attrs['speed'])} {unit_text(found['admissible_speed'].attrs['units'])}"
     for name, colour, alpha, text in (
         *_sustained(found),
-        ("quiet", SKY, 0.35, f"no hand up to {speed} gains"),
-        ("passive", GREEN, 0.55, "passive with every hand"),
+        *([] if apart else [("quiet", SKY, 0.35, f"no hand up to {speed} gains")]),
+        ("passive", GREEN, 0.55, "passive with every hand" + (", any transmission" if apart else "")),
     ):
         shown = np.ma.masked_equal(found[name].values.astype(np.uint8), 0)
         if shown.count():
@@ -180,7 +183,8 @@ def _sustained(found: xr.Dataset) -> tuple[tuple[str, str, float, str], ...]:
     """What is passive as long as contact lasts, where that is more than what is passive anyway."""
     if not (found["passive_sustained"] & ~found["passive"]).values.any():
         return ()
-    return (("passive_sustained", GREEN, 0.25, "passive while contact lasts"),)
+    this = ", with this transmission" if found.attrs.get("transmission") == "as given" else ""
+    return (("passive_sustained", GREEN, 0.25, f"passive while contact lasts{this}"),)
 
 
 def _edges(middles: Array) -> Array:

@@ -19,7 +19,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment import BackwardDifference, Wall
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.check import check
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +66,7 @@ def z_width_certificate(
 
 
 def _documents(device: Device, wall: Wall) -> tuple[dict[str, Any], ...]:
-    verdict = check_by_closed_forms(device, wall)
+    verdict = check(device, wall, iterate=False)
     if verdict.certificate is None or verdict.outcome != "passive":
         raise InputError(
             f"the map says that {wall.describe(device.motion)} is passive, and of this device that is not "

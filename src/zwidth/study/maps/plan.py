@@ -30,8 +30,8 @@ from numpy.typing import NDArray
 from zwidth.loop.sampled_plant import Coefficients, Motion
 from zwidth.model.environment import Wall
 from zwidth.model.environment.environment import RationalFunction
-from zwidth.passivity.certificate import Certificate, certify
-from zwidth.passivity.criterion_choice import Decision, decide
+from zwidth.passivity.check import check
+from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.passivity.linear.contact import damped_wall, root_above
 from zwidth.passivity.stability.characteristic import (
@@ -45,6 +45,7 @@ from zwidth.passivity.stability.characteristic import (
 from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
+from zwidth.study.maps.cables import allowed_walls, joined
 from zwidth.study.maps.request import Array, Request
 
 _NOT_COVERED = "walls with this velocity filter, whose response does not end"
@@ -117,7 +118,7 @@ def plan(asked: Request) -> Plan:
         passive=np.array(passive, dtype=np.int64),
         sustained=sustained_walls(asked),
         limit=np.array(ends),
-        contact=None if contact is None else Contact(*(float(value) for value in contact)),
+        contact=None if contact is None or asked.gives_way else Contact(*(float(value) for value in contact)),
         hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),
         not_covered="" if contact is not None else _NOT_COVERED,
     )
@@ -229,8 +230,12 @@ def sustained_walls(asked: Request) -> NDArray[np.int64]:
     """For each B the first stiffness of the axis that is proved, and the one past the last: 2 × n."""
     k, b = asked.stiffness.values, asked.virtual_damping.values
     found = np.zeros((2, len(b)), dtype=np.int64)
-    for j, (low, high) in enumerate(_by_floats(asked, b).T):
-        first, past = np.searchsorted(k, low, side="left"), np.searchsorted(k, high, side="right")
+    if asked.exactly:
+        runs = allowed_walls(asked)
+    else:
+        low, high = _by_floats(asked, b)
+        runs = np.array([np.searchsorted(k, low, side="left"), np.searchsorted(k, high, side="right")])
+    for j, (first, past) in enumerate(runs.T):
         if first < past:
             found[:, j] = _column(asked, float(b[j]), int(first), int(past))
     return found
@@ -277,20 +282,16 @@ def _between(c2: float, c1: Array, c0: Array) -> tuple[Array, Array]:
 
 def _column(asked: Request, damping: float, first: int, past: int) -> tuple[int, int]:
     """The walls of one B that are proved, both ends with a certificate; 0, 0 without one."""
-    k = asked.stiffness.values
-
-    def decided(i: int) -> Decision:
-        wall = Wall(Exact(float(k[i])), Exact(damping), velocity_filter=asked.velocity_filter)
-        return decide(asked.device, wall)
+    k, device = asked.stiffness.values, asked.whole if asked.exactly else asked.device
 
     def proved(i: int) -> bool:
-        return decided(i).is_provable
-
-    def accepted(i: int) -> bool:
-        return Certificate((certify(decided(i)),)).verify()
+        wall = Wall(Exact(float(k[i])), Exact(damping), velocity_filter=asked.velocity_filter)
+        return check(device, wall, contact="kept", iterate=False).outcome == "passive"
 
     low, high = _exactly(proved, first, past)
-    return (low, high) if low < high and accepted(low) and accepted(high - 1) else (0, 0)
+    while asked.exactly and low < high and not joined(asked, damping, low, high - 1, proved):
+        high = (low + high) // 2
+    return low, high
 
 
 def _exactly(proved: Proved, first: int, past: int) -> tuple[int, int]:

@@ -10,6 +10,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from zwidth.model.operator import Dowel, Finger, HandsOn
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.passivity.scope import Hands, Scope, scope_of
 from zwidth.passivity.stability.known_hand import motion_of
+from zwidth.passivity.transmission import as_one_body, elastic_of, is_ideal
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.study.chunks.layout import Layout
 
@@ -62,10 +64,23 @@ class Request:
     """All that the bits of a map depend on."""
 
     device: Device
+    """That as which it is proved: of one with a transmission what is seen at its motor."""
+    whole: Device
+    """As it is."""
     stiffness: Axis
     virtual_damping: Axis
     velocity_filter: VelocityEstimator
     hands: tuple[tuple[str, HandImpedance], ...]
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether the device has a transmission."""
+        return self.whole.transmission is not None
+
+    @cached_property
+    def exactly(self) -> bool:
+        """Whether walls are decided by motor, transmission and hand together."""
+        return is_ideal(self.whole) and elastic_of(self.whole, Wall(1)) is not None
 
     @property
     def layout(self) -> Layout:
@@ -87,9 +102,10 @@ class Request:
             "device": {
                 **{
                     key: str(value.fraction)
-                    for key, value in self.device.parameters().items()
+                    for key, value in self.whole.parameters().items()
                     if isinstance(value, Exact)
                 },
+                **({"transmission": repr(self.whole.transmission)} if self.gives_way else {}),
                 "motion": self.device.motion,
             },
             "stiffness": _axis(self.stiffness),
@@ -134,7 +150,8 @@ def request(
         raise InputError(
             "a map is of one device, and a parameter of this one is an interval; choose a value in it"
         )
-    named = standard_hands(device.motion) if hands is None else dict(hands)
+    usual = standard_hands(device.motion) if device.transmission is None else {}
+    named = usual if hands is None else dict(hands)
     known = tuple((name, as_hand(hand)) for name, hand in named.items())
     for name, hand in known:
         if not motion_of(device, hand).is_certain:
@@ -151,7 +168,7 @@ def request(
         raise InputError(
             f"a map has at most {MOST_CELLS} cells, got {k.cells * b.cells}; a picture needs far fewer"
         )
-    return Request(device, k, b, velocity, known)
+    return Request(as_one_body(device), device, k, b, velocity, known)
 
 
 def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
@@ -168,6 +185,11 @@ def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
 def scopes(asked: Request, speed: float) -> dict[str, Scope]:
     """The scope of each region by its name; `speed` is that up to which a wall is quiet [m/s; rad/s]."""
     every = scope_of(asked.device, Wall(1))
+    if asked.gives_way:
+        every = every.replace(transmission="any")
+        this = scope_of(asked.whole.motor_side, Wall(1)).replace(transmission="as given")
+        kept = this if asked.exactly else every
+        return {"passive": every, "passive_sustained": kept.replace(contact="kept")}
     late = asked.device.exact("delay") / asked.device.exact("sample_period")
     known = every.replace(
         contact="kept",

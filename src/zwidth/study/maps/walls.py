@@ -73,7 +73,8 @@ def z_width(
     velocity_filter
         Of the walls, as for `Wall`. Default: the backward difference.
     hands
-        Known hands by name, as for `stability`. Default: "none", "finger" and "dowel".
+        Known hands by name, as for `stability`. Default: "none", "finger" and "dowel"; with a transmission
+        nobody, for there their stability is not known.
     speed
         Up to which a hand must not gain energy for a wall to count as `quiet` [m/s; rad/s].
     path
@@ -95,7 +96,9 @@ def z_width(
         `largest_stiffness`, by counting cells.  Where no condition covers contact made and broken, the
         attribute `not_covered` says of which walls: there `passive` and `quiet` are False for want of a
         condition, except at B = 0; `spring_limit` is the stiffest passive spring.
-        `free_mass`, `free_damping` and `free_friction`, the lower end.
+        `free_mass`, `free_damping` and `free_friction`, the lower end, of both sides of a transmission. With
+        one `passive` is what holds for every transmission, `passive_sustained` is exact of this one where
+        friction is viscous and the encoder ideal, and `quiet` no more than `passive`.
 
     Raises
     ------
@@ -157,13 +160,15 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
         ("free_damping", "damping"),
         ("free_friction", "coulomb_friction"),
     ):
-        variables[name] = ((), float(asked.device.exact(key)), {"units": GLOSSARY[key].unit_for(motion)})
+        unit = {"units": GLOSSARY[key].unit_for(motion)}
+        variables[name] = ((), float(asked.whole.motor_side.exact(key)) + _behind(asked.whole, key), unit)
     attrs = {
         "format": FORMAT,
         "device": asked.device.name,
         "motion": motion,
         "velocity_filter": asked.velocity_filter.describe(),
         "not_covered": ready.not_covered,
+        "transmission": about["passive_sustained"].transmission,
     }
     variables["spring_limit"] = (
         (),
@@ -171,6 +176,12 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
         {"units": units[0], "long_name": "stiffest spring, B = 0, that no hand takes energy out of"},
     )
     return xr.Dataset(variables, {**coordinates, "region": names}, attrs)
+
+
+def _behind(device: Device, key: str) -> float:
+    """What of it is on the hand's side of a transmission; nan where it is not known."""
+    found = getattr(device.transmission, f"handle_{key}", 0.0)
+    return float("nan") if found is None else float(found)
 
 
 def _largest(mask: Any, stiffness: Any) -> float:

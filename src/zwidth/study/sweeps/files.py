@@ -195,8 +195,9 @@ def attributes(asked: Request, layers: Layers) -> dict[str, str]:
     if asked.of in ("check", "limit"):
         assert isinstance(loop.subject, Device)
         assert loop.environment is not None
-        common = scope_of(loop.subject, loop.environment).to_dict()
-        told["scope"] = to_json({k: v for k, v in common.items() if not k.startswith(_OF_EACH)}, indent=None)
+        common = scope_of(loop.subject.motor_side, loop.environment).to_dict()
+        of_each = (*_OF_EACH, *asked.columns)  # of which transmission an answer is, has a column of its own
+        told["scope"] = to_json({k: v for k, v in common.items() if not k.startswith(of_each)}, indent=None)
     refused = layers[REFUSED]
     if refused.any():
         told["first_refused"] = _why(asked, tuple(int(n[0]) for n in refused.nonzero()))

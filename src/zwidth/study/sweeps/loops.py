@@ -2,8 +2,9 @@
 
 A parameter is named as its option is: `damping` is the device's, `virtual_damping` the environment's,
 `velocity_filter.time_constant` its filter's, `environment.stiffness` is of what stands behind a coupling,
-`operator.force` of the hand.  With one law in a chain `law.largest_damping` is of that law; with several
-`law.2.largest_damping` of the second, the first being next to the environment.  Of a pair `stiffness` is of
+`operator.force` of the hand, `transmission.stiffness` of what is between it and the motor.  With one law
+in a chain `law.largest_damping` is of that law; with several `law.2.largest_damping` of the second, the
+first being next to the environment.  Of a pair `stiffness` is of
 its coupling, `leader.damping` and `follower.damping` are of its arms, and `rate`, like every other number of
 a device, of both.
 """
@@ -17,7 +18,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.model.device import Device
+from zwidth.model.device import Device, Transmission
 from zwidth.model.device.rotary import ROTARY, rotary
 from zwidth.model.environment import OnePole, Window
 from zwidth.model.environment.environment import Environment
@@ -142,6 +143,20 @@ def _of_device(loop: Loop) -> Units:
     return device_units(loop.motion) if isinstance(loop.subject, Device) else {}
 
 
+def _of_transmission(loop: Loop) -> Units:
+    if not isinstance(loop.subject, Device) or loop.subject.transmission is None:
+        return {}
+    own = parameters_of(Transmission)
+    return {name: each.unit_for(loop.motion) for name, each in own.items() if each.is_number}
+
+
+def _transmission(loop: Loop, new: Changes) -> Loop:
+    assert isinstance(loop.subject, Device)
+    given = loop.subject.transmission
+    assert given is not None
+    return replace(loop, subject=loop.subject.replace(transmission=given.replace(**new)))
+
+
 def _of_arms(loop: Loop) -> Units:
     return device_units(loop.motion) if isinstance(loop.subject, Pair) else {}
 
@@ -249,6 +264,7 @@ def _run(loop: Loop, new: Changes) -> Loop:
 PARTS: Mapping[str, Part] = MappingProxyType(
     {
         "device": Part("", _of_device, _device),
+        "transmission": Part("transmission.", _of_transmission, _transmission),
         "arms": Part("", _of_arms, _arms("leader", "follower")),
         "leader": Part("leader.", _of_arms, _arms("leader")),
         "follower": Part("follower.", _of_arms, _arms("follower")),

@@ -17,7 +17,7 @@ from zwidth.model.pairs import Pair
 from zwidth.model.specification.table import quoted
 from zwidth.passivity.budget import LIMITS
 from zwidth.passivity.pairs.verdict import LIMITS as LIMITS_OF_A_PAIR
-from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Outcome, Scope
+from zwidth.passivity.scope import Contact, Encoder, FedWith, Law, Outcome, Scope, Transmission
 from zwidth.passivity.stability.characteristic import Outcome as Rests
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.study.sweeps.axes import Column, Columns
@@ -47,8 +47,14 @@ _CONTACT = Column("contact that the outcome is about", words=get_args(Contact))
 _ENCODER = Column("whether the encoder's steps are in it", words=get_args(Encoder))
 
 
-def _scope(scope: Scope) -> Answer:
-    return {"contact": scope.contact, "encoder": scope.encoder, "fed_with": scope.fed_with, "law": scope.law}
+def _scope(loop: Loop, scope: Scope) -> Answer:
+    return {name: getattr(scope, name) for name in _of_a_scope(loop)}
+
+
+def _of_a_scope(loop: Loop) -> Columns:
+    gives_way = isinstance(loop.subject, Device) and loop.subject.transmission is not None
+    between = Column("of which transmission that is proved", words=get_args(Transmission)[:3])
+    return {**_OF_A_SCOPE, **({"transmission": between} if gives_way else {})}
 
 
 _OF_A_SCOPE = {
@@ -70,7 +76,7 @@ HANDS = "hands"
 def _checked_columns(loop: Loop) -> Columns:
     return {
         "outcome": _OUTCOME,
-        **_OF_A_SCOPE,
+        **_of_a_scope(loop),
         "binding": Column("what binds: what is violated, or would be first", words=LIMITS),
         "max_stiffness": _stiffness(loop, "largest passive stiffness, all else as it is"),
         **_columns_of_hands(loop),
@@ -106,7 +112,7 @@ def checked(loop: Loop, line: Line) -> Answer:
         line[about] = getattr(verdict, "max_stiffness", None)
     return {
         "outcome": verdict.outcome,
-        **_scope(verdict.scope),
+        **_scope(loop, verdict.scope),
         "binding": getattr(verdict, "limit", ""),
         "max_stiffness": line[about],
         **_of_hands(loop),
@@ -133,7 +139,7 @@ def _limited_columns(loop: Loop) -> Columns:
     return {
         "proved_passive": Column("last value that is proved passive", unit),
         "proved_active": Column("first value at which a motion takes energy out", unit),
-        **_OF_A_SCOPE,
+        **_of_a_scope(loop),
     }
 
 
@@ -145,7 +151,7 @@ def limited(loop: Loop, _: Line) -> Answer:
     return {
         "proved_passive": found.proved_passive,
         "proved_active": found.proved_active,
-        **_scope(found.scope),
+        **_scope(loop, found.scope),
     }
 
 

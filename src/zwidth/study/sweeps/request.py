@@ -78,8 +78,9 @@ class Request:
 
     @property
     def _by_closed_forms_alone(self) -> bool:
-        """Whether verdicts are all that is asked for: hands that are known are looked at loop by loop."""
-        return self.of == "check" and HANDS not in self.loop.options
+        """Whether verdicts on one mass are all that is asked for: known hands are looked at loop by loop."""
+        rigid = getattr(self.loop.subject, "transmission", None) is None
+        return rigid and self.of == "check" and HANDS not in self.loop.options
 
     @property
     def size(self) -> int:
