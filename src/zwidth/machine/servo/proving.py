@@ -101,7 +101,7 @@ def least_friction(device: Device) -> Device:
 
     Of a transmission what the motor feels is left, whatever the hand does.
     """
-    device = device if device.transmission is None else seen_at_motor(device)
+    device = seen_at_motor(device)
     low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
     found = device.replace(stiction=None, **low)
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]
