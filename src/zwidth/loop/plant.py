@@ -314,7 +314,7 @@ def product_integral(work: Array, first: int, second: int, terms: int, u: float)
 
 
 @compiled
-def first_zero(work: Array, terms: int, sign: float) -> float:
+def first_zero(work: Array, start: int, terms: int, sign: float) -> float:
     """The first u in (0, 1] where v is 0, or 2 if there is none; `sign` · v ≥ 0 at first.
 
     A zero at u = 0, from which the motion starts, is divided out.  With
@@ -322,15 +322,15 @@ def first_zero(work: Array, terms: int, sign: float) -> float:
     is never beyond the first zero sought, and the steps to it converge
     quadratically there.
     """
-    skip = 0
-    while skip < terms - 1 and work[skip] == 0.0:
+    skip = start
+    while skip < start + terms - 1 and work[skip] == 0.0:
         skip += 1
     if work[skip] == 0.0:  # forces so small that the series has no digit of them: it stays where it is
         return 2.0
     if sign * work[skip] < 0.0:
         return 0.0
     rest, curve = 0.0, 0.0
-    for n in range(terms - skip - 1, 0, -1):
+    for n in range(start + terms - skip - 1, 0, -1):
         c = abs(work[skip + n])
         rest += c
         curve += n * (n - 1.0) * c
@@ -340,7 +340,7 @@ def first_zero(work: Array, terms: int, sign: float) -> float:
     u = 0.0
     for _ in range(_SEARCH):
         p, slope = 0.0, 0.0
-        for n in range(terms - skip - 1, -1, -1):
+        for n in range(start + terms - skip - 1, -1, -1):
             slope = slope * u + p
             p = p * u + sign * work[skip + n]
         if p <= _ROUNDING * size and slope < 0.0:

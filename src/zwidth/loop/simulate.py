@@ -20,7 +20,7 @@ from zwidth.loop.runs import run_plain
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import Trace, build_trace
-from zwidth.loop.two_masses import run_two
+from zwidth.loop.two_masses_run import run_two
 from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.device.device import Device
 from zwidth.model.operator.operator import Operator

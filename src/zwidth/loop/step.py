@@ -278,7 +278,7 @@ def _slide_tied(state: Array, plant: Plant, drive: Drive, h: float, work: Array)
     if v0 == 0.0 and side * drive.external <= plant.stiction:  # it has just broken away
         net = side * (plant.stiction - plant.coulomb)
     terms = expand(plant, v0, net, drive.rate, drive.transient, length, work)
-    u = first_zero(work, terms, side)
+    u = first_zero(work, 0, terms, side)
     stopped = u <= 1.0
     if not stopped:
         u = 1.0

@@ -1,4 +1,4 @@
-"""Motor and handle, a spring and a damper between them: their motion between events, and the sampled loop.
+"""Motor and handle, a spring and a damper between them: their motion between events.
 
     m₁ v₁' = −f_a(t) − b₁ v₁ − f_c1 sgn v₁ − k w − c w'                              w = x₁ − x₂
     M₂ v₂' = F − b₂ v₂ − f_c2 sgn v₂ + k w + c w' + k_h (x_a(t) − x₂) + c_h (ẋ_a − v₂)   M₂ = m₂ + m_h
@@ -16,28 +16,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.loop.kernel import (
-    R_COMMAND,
-    R_READING,
-    RECORDED,
-    apply_due,
-    arrival,
-    first_due,
-    in_interval,
-    note,
-    on_the_way,
-    packed_plant,
-    sample,
-)
+from zwidth.loop.kernel import RECORDED, packed_plant
 from zwidth.loop.plant import (
     COULOMB,
     DIRECTION,
     FAULT,
     FORCE,
     GOAL,
-    HAND_WORK,
     POSITION,
-    SOURCE_WORK,
     STATE_SIZE,
     STOPS,
     TERMS,
@@ -332,7 +318,7 @@ def _event(work: Array, own: int, on: int, terms: int, side: float, stiction: fl
     if stiction == 0.0:
         return 2.0
     if side != 0.0:
-        return first_zero(work[own : own + TERMS], terms, side)
+        return first_zero(work, own, terms, side)
     return min(_passing(work, on, terms, 1.0, stiction), _passing(work, on, terms, -1.0, stiction))
 
 
@@ -342,7 +328,7 @@ def _passing(work: Array, on: int, terms: int, side: float, stiction: float) -> 
     work[_ROOM] = max(stiction, abs(work[on])) - side * work[on]
     for n in range(1, terms):
         work[_ROOM + n] = -side * work[on + n]
-    return first_zero(work[_ROOM : _ROOM + TERMS], terms, 1.0)
+    return first_zero(work, _ROOM, terms, 1.0)
 
 
 @compiled
@@ -359,81 +345,3 @@ def _after(
     if turn == u or (u > 0.0 and v * side <= 0.0):
         return 0.0, 0.0
     return v, side
-
-
-@compiled
-def run_two(
-    first: int,
-    last: int,
-    points: int,
-    state: Array,
-    numbers: Array,
-    law: Array,
-    memory: Array,
-    work: Array,
-    late: int,
-    offset: float,
-    lengths: Array,
-    arrivals: Array,
-    missed: Array,
-    force: Array,
-    anchor: Array,
-    target: Array,
-    switch: Array,
-    commands: Array,
-    record: Array,
-) -> None:
-    """Run as `kernel.run` does; state, numbers, work and record are those of two bodies."""
-    two = packed_two(numbers)
-    samples = commands.shape[0] - 1
-    due = first_due(first, late, arrivals)
-    for k in range(first, last):
-        final = k == samples
-        h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
-        place = state[POSITION] if two.sensed > 0.0 else state[MOTOR]
-        reading, command = sample(k, points, place, state, law, memory, missed, commands, record)
-        for column in range(k * points, min((k + 1) * points, record.shape[1])):
-            record[R_READING, column], record[R_COMMAND, column] = reading, command
-        hand = in_interval(k, h, final, state[POSITION], force, anchor, target, switch)
-        now = 0.0
-        for point in range(points):
-            due = apply_due(state, two.motor, due, k, now, late, offset, arrivals, commands)
-            _note(state, k * points + point, record)
-            if final:
-                return
-            end = h if point == points - 1 else h * (point + 1) / points
-            while now < end:
-                until = min(arrival(due, k, late, offset, arrivals), end)
-                if hand.kinematic:
-                    if hand.bent and now < offset:
-                        until = min(until, offset)
-                    _carry(state, two, on_the_way(hand, offset, until, h), until - now, work)
-                else:
-                    here = hand.anchor + hand.speed * now
-                    advance_two(state, two, hand.push, here, hand.speed, until - now, work)
-                now = until
-                if now < end:
-                    due = apply_due(state, two.motor, due, k, now, late, offset, arrivals, commands)
-
-
-@compiled
-def _carry(state: Array, two: TwoMasses, target: float, h: float, work: Array) -> None:
-    """The handle goes to `target` in h seconds at constant velocity, after an impulse of the hand on it."""
-    v0, v1 = state[VELOCITY], (target - state[POSITION]) / h
-    impulse = 0.5 * two.handle.mass * (v1 - v0) * (v1 + v0)
-    state[HAND_WORK] += impulse
-    state[SOURCE_WORK] += impulse
-    state[VELOCITY] = v1
-    state[DIRECTION] = 1.0 if v1 > 0.0 else (-1.0 if v1 < 0.0 else 0.0)
-    advance_two(state, two, 0.0, 0.0, 0.0, h, work)
-    state[POSITION] = target
-
-
-@compiled
-def _note(state: Array, column: int, record: Array) -> None:
-    note(state, column, record)
-    record[R_MOTOR, column] = state[MOTOR]
-    record[R_MOTOR_VELOCITY, column] = state[MOTOR_VELOCITY]
-    record[R_MOTOR_VISCOUS, column] = state[MOTOR_VISCOUS]
-    record[R_MOTOR_COULOMB, column] = state[MOTOR_COULOMB]
-    record[R_INSIDE_LOSS, column] = state[INSIDE_LOSS]

@@ -201,9 +201,13 @@ def is_ideal(device: Device) -> bool:
 
 
 def seen_at_motor(device: Device) -> Device:
-    """The motor's side with the damping that is there whatever the hand does: b₁ + c b₂/(c + b₂)."""
+    """The motor's side with the damping that is there whatever the hand does: b₁ + c b₂/(c + b₂).
+
+    A device without a transmission as it is.
+    """
     given, motor = device.transmission, device.motor_side
-    assert given is not None
+    if given is None:
+        return device
     sums = [
         b + (c * h / (c + h) if c else c)
         for b, c, h in zip(*map(ends, (motor.damping, given.damping, given.handle_damping)), strict=True)

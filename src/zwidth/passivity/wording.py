@@ -195,6 +195,11 @@ def lines(scope: Scope, outcome: str | None = None) -> tuple[str, ...]:
     return tuple(_lines(scope, active=outcome == "active"))
 
 
+def of_transmission(scope: Scope) -> str:
+    """Of which transmission a proof is, in short; "" where motor and hand move as one."""
+    return "" if scope.transmission == "rigid" else _TRANSMISSION[scope.transmission].in_short
+
+
 def _lines(scope: Scope, active: bool) -> Iterator[str]:
     yield "; ".join(
         [

@@ -79,7 +79,7 @@ def _claim(found: Identification) -> str:
     if found.identified.shows("wrong model"):
         return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
     device = found.identified.device(found.confidence, **found.others)
-    device = device if device.transmission is None else seen_at_motor(device)
+    device = seen_at_motor(device)
     stiffest = check_by_closed_forms(device, Wall(stiffness=1)).max_stiffness
     confidence = f"at {percent(found.confidence)} confidence"
     if not stiffest:

@@ -138,11 +138,13 @@ def _give_out(report: Any, as_json: bool, save: Path | None = None) -> int:
 
 def _say_what_is_served(servo: Servo) -> Callable[[], Any]:
     """What was measured and proved, before the force comes."""
+    from zwidth.machine.servo.proving import claimed
+
     assert servo.measured is not None
     assert servo.verdict is not None
     with quiet_pipe(sys.stderr):
         print(servo.measured, file=sys.stderr)
-        print(f"{servo.verdict.outcome}: {servo.verdict.claim}", file=sys.stderr)
+        print(f"{servo.verdict.outcome}: {claimed(servo.verdict)}", file=sys.stderr)
         print(
             f"{servo.connection.describe()}\nif nothing comes any more: {servo.connection.on_silence}\n"
             f"serving {servo.rows.title}; Ctrl-C ends it",

@@ -2,7 +2,9 @@
 
 A force that is off by e_k, |e_k| ≤ ε, gives Σ e_k Δx_k ≤ ε Σ |Δx_k| ≤ ε ∫ |v| dt more than the law's own.
 Coulomb friction takes f_c ∫ |v| dt.  So if no hand gains from the law with f_c − ε, none gains from the
-machine with f_c; whatever the delay is, since the force that is off is held as the law's is.
+machine with f_c; whatever the delay is, since the force that is off is held as the law's is.  Behind a
+transmission it is so of what the motor's side alone pays for; what is proved of motor, transmission and hand
+together is proved of viscous friction, and of none of a force that is off.
 
 A chain of laws that ends in force bounding needs no ε: that law pays for its own rounding, of 53 or 24 bits,
 and for the converter, and whatever is commanded before it may be off by anything.
@@ -20,7 +22,7 @@ from textwrap import wrap
 from zwidth.loop.start import unloaded_range
 from zwidth.machine.firmware.law import LawProgram
 from zwidth.machine.firmware.machine import Machine
-from zwidth.machine.servo.proving import least_friction
+from zwidth.machine.servo.proving import claimed, least_friction
 from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
@@ -28,6 +30,7 @@ from zwidth.model.rendering.rendering_law import LoopContext
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
 from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
+from zwidth.passivity.transmission import seen_at_motor
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.text import quantity_unit
@@ -108,9 +111,11 @@ class Judged:
 
     def cost(self, device: Device, environment: Environment) -> float | None:
         """By how much the largest passive stiffness is less [N/m; N·m/rad]; None where that is no number."""
-        if not (self.counted and device.is_certain and has_stiffness(environment)):
+        paid = self.counted and self.verdict.scope.transmission != "as given"
+        if not (paid and device.is_certain and has_stiffness(environment)):
             return None
-        before, after = (max_stiffness(d, environment, True) for d in (device, self.verdict.device))
+        both = map(seen_at_motor, (device, self.verdict.device))
+        before, after = (max_stiffness(d, environment, True) for d in both)
         return None if before is None or after is None else before - after
 
 
@@ -136,17 +141,29 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)
     spent = Exact(friction - off) if most == friction else Interval(friction - off, most - off)
     left = device.replace(coulomb_friction=spent)
-    return Judged(machine=machine, ideal=ideal, verdict=decide(left, environment), counted=True)
+    found = decide(left, environment)
+    if off and found.outcome in PROVED and found.scope.transmission == "as given":
+        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=_OF_A_KNOWN)
+    return Judged(machine=machine, ideal=ideal, verdict=found, counted=True)
+
+
+_OF_A_KNOWN = (
+    "The proof is of one transmission, with an exact force: the motor's Coulomb friction pays for none."
+)
 
 
 def _bounded(device: Device, environment: Environment, machine: Machine) -> Judged | None:
     """Of a chain that ends in force bounding, with the roundings that the machine has; None of any other."""
+    given = device.transmission
+    if given is not None and given.encoder == "handle":
+        return None
     if machine.number == "fixed" or not is_bounded(environment) or isinstance(device.delay, Interval):
         return None
     found = check_bounding(least_friction(device), environment, single=machine.number == "float")
     if found.certificate is None:
         return None
-    verdict = Verdict("passive", found.scope, device, environment, certificate=found.certificate)
+    scope = found.scope if given is None else found.scope.replace(transmission="any")
+    verdict = Verdict("passive", scope, device, environment, certificate=found.certificate)
     return Judged(machine=machine, ideal=verdict, verdict=verdict, counted=True, bounded=True)
 
 
@@ -161,9 +178,9 @@ def digest(text: str) -> str:
 def claim(found: Judged) -> str:
     """Of the law in the machine's numbers."""
     if found.proved:
-        return found.verdict.claim
+        return claimed(found.verdict)
     if found.verdict.outcome in PROVED:
-        return f"NOT PROVED in {found.machine.number}, only in real numbers: {found.verdict.claim}"
+        return f"NOT PROVED in {found.machine.number}, only in real numbers: {claimed(found.verdict)}"
     return f"NOT PROVED: {found.verdict.claim}"
 
 

@@ -34,7 +34,7 @@ from zwidth.quantity.parameter import plain, read_number
 # From TOLD on: what it tells besides, see `Connection.tells`; from OWN on: what it remembers itself.
 DESCRIPTOR, FORCE, READING, TIME, INDEX, UNTIL = range(6)
 TOLD = 8
-MOST_TOLD = 8
+MOST_TOLD = 12
 OWN = TOLD + MOST_TOLD
 
 # What became of a question.

@@ -18,10 +18,12 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import CompiledConnection, Connection, LibraryConnection
-from zwidth.model.device.device import Device, require_rigid
+from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
+from zwidth.passivity.transmission import seen_at_motor
 from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.wording import of_transmission
 from zwidth.quantity.answered import answered
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -46,14 +48,24 @@ def judged(
 ) -> Verdict:
     """What is claimed of a law, with the delay and the longest period that were measured.
 
-    The delay of a simulated device is its own, whatever the machine is like.
+    The delay of a simulated device is its own, whatever the machine is like.  Behind a transmission a law may
+    be passive with a long delay and not with a short one: it is judged with that of the device alone, too.
     """
     seen = device if simulated else device.replace(delay=measured.delay(device))
+    slower = seen.replace(sample_period=measured.longest_period(device.exact("sample_period")))
+    quicker = () if device.transmission is None or simulated else (device,)
     verdict = decide(seen, law)
-    if verdict.outcome not in SERVED_OUTCOMES:
-        return verdict
-    slower = decide(seen.replace(sample_period=measured.longest_period(device.exact("sample_period"))), law)
-    return verdict if slower.outcome in SERVED_OUTCOMES else slower
+    for other in (slower, *quicker):
+        if verdict.outcome in SERVED_OUTCOMES:
+            found = decide(other, law)
+            verdict = verdict if found.outcome in SERVED_OUTCOMES else found
+    return verdict
+
+
+def claimed(verdict: Verdict) -> str:
+    """What is claimed; of a proof also for which transmission."""
+    between = of_transmission(verdict.scope) if verdict.outcome in SERVED_OUTCOMES else ""
+    return f"{verdict.claim} It holds for {between}." if between else verdict.claim
 
 
 def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
@@ -85,8 +97,11 @@ def check_kinds(device: Device, connection: Connection) -> None:
 
 
 def least_friction(device: Device) -> Device:
-    """The device with the least friction that it may have: the law does not depend on it."""
-    require_rigid(device, "a law on a machine")
+    """The device that a law and a ledger reckon with, of one mass, with the least friction that it may have.
+
+    Of a transmission what the motor feels is left, whatever the hand does.
+    """
+    device = seen_at_motor(device)
     low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
     found = device.replace(stiction=None, **low)
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]

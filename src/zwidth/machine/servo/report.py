@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from math import isfinite
+from typing import TYPE_CHECKING, cast
 
 from zwidth.machine.servo import cycle
 from zwidth.machine.servo.connection import STATUS, Connection
 from zwidth.machine.servo.loop import Shared
 from zwidth.machine.servo.priority import Granted
-from zwidth.machine.servo.proving import Measured
+from zwidth.machine.servo.proving import Measured, claimed
 from zwidth.machine.servo.ring import quantile
 from zwidth.machine.servo.safety import ASKED, BAD_ANSWER, DONE, REASONS, RUNNING
 from zwidth.passivity.verdict import Verdict
@@ -69,18 +70,19 @@ class ServoReport(Served):
         row=("late by, in half of them", "late by, in 99 %", "late by, in 99.9 %", "late by, at most"),
         digits=3,
     )
-    energy_out: float = answered(
-        "W_a, given to the handle by the actuator, as the encoder saw it",
+    energy_out: float | None = answered(
+        "W_a, given to the handle by the actuator, as the encoder saw it; null, as the two below, of an "
+        "encoder that does not see the motor",
         unit="J",
         row="the actuator gave the handle",
     )
-    friction_loss: float = answered(
+    friction_loss: float | None = answered(
         "what the device's friction took of it at least",
         key="friction_loss_at_least",
         unit="J",
         row="friction took at least",
     )
-    least: float = answered(
+    least: float | None = answered(
         "the least that friction_loss − energy_out was: as far as encoder and friction are known, the hand "
         "has always put in so much at least, but for what the handle had in its motion",
         key="hand_put_in_at_least",
@@ -100,8 +102,10 @@ class ServoReport(Served):
         """The answer first."""
         yield f"{self.title}: {self.ended or 'runs'}"
         if self.verdict is not None:
-            yield self.verdict.claim
-        yield Table(rows=[*rows_of(self)], lefts=1)
+            yield claimed(cast("Verdict", self.verdict))
+        yield Table(rows=[row for row in rows_of(self) if row[1] != "none"], lefts=1)
+        if self.least is None:
+            yield "The encoder does not see the motor: what energy the actuator gave is not known."
         if self.recorded is not None:
             yield self.recorded.describe()
         if self.granted is not None:
@@ -135,11 +139,15 @@ def report_of(
         cut=int(control[cycle.CUT]),
         laws=int(control[cycle.CHANGES]),
         lateness=_quantiles(loop),
-        energy_out=float(n[cycle.WORK]),
-        friction_loss=float(n[cycle.LOSS]),
-        least=float(n[cycle.LEAST]),
+        energy_out=_known(n[cycle.WORK]),
+        friction_loss=_known(n[cycle.LOSS]),
+        least=_known(n[cycle.LEAST]),
         met_hardware=connection.met_hardware,
     )
+
+
+def _known(number: float) -> float | None:
+    return float(number) if isfinite(number) else None
 
 
 def _quantiles(loop: Shared) -> tuple[float, float, float, float]:

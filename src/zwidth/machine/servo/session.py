@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import atexit
 from datetime import UTC, datetime
-from math import inf
+from math import inf, nan
 from typing import Any, Literal, cast
 
 from zwidth.errors import InputError
@@ -37,6 +37,7 @@ from zwidth.machine.servo.proving import (
     Decide,
     Measured,
     check_kinds,
+    claimed,
     judged,
     least_friction,
     measured,
@@ -239,7 +240,7 @@ class Servo:
         if self.verdict is None:
             self.verdict = self.judge()
             self._laws = [(self._title, self.verdict)]
-            self._rows.about["verdict"] = self.verdict.claim
+            self._rows.about["verdict"] = claimed(self.verdict)
         if not anyway:
             refuse_not_proved(self.verdict, cast(Measured, self.measured))
         return self.verdict
@@ -323,8 +324,10 @@ class Servo:
         n[cycle.FORCE_MOST : cycle.HOST_MOST + 1] = self._limits
         if opened is not self._opened:
             n[cycle.JUMP_MOST] = inf  # no wall stops the hand of a script while it is measured
-        n[cycle.DAMPING] = float(ends(self.device.damping)[0])
-        n[cycle.COULOMB] = float(ends(self.device.coulomb_friction)[0])
+        n[cycle.DAMPING] = float(self._certain.exact("damping"))
+        n[cycle.COULOMB] = float(self._certain.exact("coulomb_friction"))
+        if self.device.transmission is not None and self.device.transmission.encoder == "handle":
+            n[[cycle.WORK, cycle.LOSS, cycle.LEAST]] = nan  # the encoder does not see how the motor moves
         late, exchange = (inf, inf) if self.measured is None else self.measured.supposed
         n[cycle.LATE_MOST] = late
         n[cycle.EXCHANGE_MOST] = exchange if self.connection.samples is None else inf

@@ -28,9 +28,17 @@ from zwidth.loop.plant import (
     VELOCITY,
     VISCOUS,
     WORK,
-    Plant,
 )
 from zwidth.loop.setup import Setup, prepare
+from zwidth.loop.two_masses import (
+    INSIDE_LOSS,
+    MOTOR,
+    MOTOR_VELOCITY,
+    STATE_OF_TWO,
+    WORK_OF_TWO,
+    packed_two,
+)
+from zwidth.loop.two_masses_run import travel_two
 from zwidth.machine.servo.connection import (
     CLOSED,
     FORCE,
@@ -57,16 +65,16 @@ from zwidth.quantity.exact import RealLike
 if TYPE_CHECKING:
     from zwidth.model.operator.operator import Signal
 
-_PLANT = 9
-"""Numbers of a `loop.plant.Plant`."""
+_PLANT, _TWO = 9, 22
+"""Numbers of a `loop.plant.Plant`, and of `loop.two_masses.TwoMasses`."""
 
 # What it remembers, from OWN on: the samples of its script, T, delay, resolution and phase of the encoder;
 # the sample and time that the plant has been moved to, how many commands are on the way, room for how many;
-# how long the force, the anchor and the prescribed position of the script are.
+# how long the force, the anchor and the prescribed position of the script are; 1 where they are two masses.
 (
-    SAMPLES, STEP, DELAY, COUNT, SHIFT, LAST, CLOCK, WAITING, ROOM, FORCES, ANCHORS, TARGETS,
-) = range(OWN, OWN + 12)  # fmt: skip
-ARRAYS = OWN + 12
+    SAMPLES, STEP, DELAY, COUNT, SHIFT, LAST, CLOCK, WAITING, ROOM, FORCES, ANCHORS, TARGETS, TWO,
+) = range(OWN, OWN + 13)  # fmt: skip
+ARRAYS = OWN + 13
 """Behind them: plant, state, scratch; commands and the times at which they are applied; the script."""
 
 
@@ -88,7 +96,7 @@ def _missed(s: Array, commands: Array, times: Array, j: int) -> None:
 def _through(
     s: Array,
     state: Array,
-    plant: Plant,
+    numbers: Array,
     hand: Hand,
     end: float,
     commands: Array,
@@ -107,24 +115,32 @@ def _through(
         room[1, i] = into
         if late:
             times[i] = end
-    due = 0
-    due = apply_due(state, plant, due, 0, 0.0, 0, 0.0, room, commands)
-    due = travel(state, plant, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
+    due = apply_due(state, packed_plant(numbers[:_PLANT]), 0, 0, 0.0, 0, 0.0, room, commands)
+    if s[TWO] > 0.0:
+        two = packed_two(numbers)
+        due = travel_two(state, two, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
+    else:
+        plant = packed_plant(numbers)
+        due = travel(state, plant, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
     for i in range(due, waiting):
         commands[i - due], times[i - due] = commands[i], times[i]
     s[WAITING] = waiting - due
     s[CLOCK] = end
 
 
+@compiled
+def _bodies(s: Array) -> tuple[int, int, int]:
+    """Where the numbers of the bodies, their state and the scratch end."""
+    if s[TWO] > 0.0:
+        return ARRAYS + _TWO, ARRAYS + _TWO + STATE_OF_TWO, ARRAYS + _TWO + STATE_OF_TWO + WORK_OF_TWO
+    return ARRAYS + _PLANT, ARRAYS + _PLANT + STATE_SIZE, ARRAYS + _PLANT + STATE_SIZE + WORK
+
+
 @exchanged
 def _measure(s: Array, inbox: Bytes, outbox: Bytes) -> int:
     """Move the plant to the time of this sample and read the encoder."""
-    at = ARRAYS
-    plant = packed_plant(s[at : at + _PLANT])
-    state = s[at + _PLANT : at + _PLANT + STATE_SIZE]
-    at += _PLANT + STATE_SIZE
-    work = s[at : at + WORK]
-    at += WORK
+    body, own, at = _bodies(s)
+    numbers, state, work = s[ARRAYS:body], s[body:own], s[own:at]
     room = int(s[ROOM])
     commands, times, arrivals = (
         s[at : at + room],
@@ -146,9 +162,15 @@ def _measure(s: Array, inbox: Bytes, outbox: Bytes) -> int:
         if j > s[LAST]:
             _missed(s, commands, times, j)
         hand = in_interval(j, end - s[CLOCK], False, state[POSITION], force, anchor, target, switch)
-        _through(s, state, plant, hand, end, commands, times, arrivals, work)
+        _through(s, state, numbers, hand, end, commands, times, arrivals, work)
     s[LAST] = k
-    s[READING] = measured(state[POSITION], s[COUNT], s[SHIFT])
+    place = state[POSITION]
+    if s[TWO] > 0.0:
+        two, twist = packed_two(numbers), state[MOTOR] - state[POSITION]
+        place = place if two.sensed > 0.0 else state[MOTOR]
+        s[TOLD + 8], s[TOLD + 9] = state[MOTOR], state[MOTOR_VELOCITY]
+        s[TOLD + 10], s[TOLD + 11] = 0.5 * two.spring * twist * twist, state[INSIDE_LOSS]
+    s[READING] = measured(place, s[COUNT], s[SHIFT])
     s[TOLD], s[TOLD + 1] = state[POSITION], state[VELOCITY]
     s[TOLD + 2], s[TOLD + 3] = state[HAND_WORK], state[ACTUATOR_WORK]
     s[TOLD + 4], s[TOLD + 5] = state[VISCOUS], state[COULOMB]
@@ -159,7 +181,7 @@ def _measure(s: Array, inbox: Bytes, outbox: Bytes) -> int:
 @exchanged
 def _apply(s: Array, inbox: Bytes, outbox: Bytes) -> int:
     """Give the force to the amplifier: it comes after the delay."""
-    at, room = ARRAYS + _PLANT + STATE_SIZE + WORK, int(s[ROOM])
+    at, room = _bodies(s)[2], int(s[ROOM])
     _send(s, s[at : at + room], s[at + room : at + 2 * room], s[TIME], -s[FORCE])
     return GOOD
 
@@ -237,6 +259,9 @@ class Simulated(CompiledConnection):
         x = "rad" if self.device.motion == "rotary" else "m"
         energies = ("hand_work", "actuator_work", "viscous_loss", "coulomb_loss", "hand_source_work")
         told = [f"{name}_J" for name in (*energies, "hand_damper_loss")]
+        if self.device.transmission is not None:
+            told += [f"motor_position_{x}", f"motor_velocity_{x}_per_s", "transmission_energy_J"]
+            told.append("transmission_loss_J")
         object.__setattr__(self, "tells", (f"true_position_{x}", f"true_velocity_{x}_per_s", *told))
         object.__setattr__(self, "duration", seconds_of(self.duration))
         self.setup()
@@ -250,6 +275,7 @@ class Simulated(CompiledConnection):
             self.duration,
             encoder_phase=self.encoder_phase,
             amplifier=self.amplifier,
+            flexible=True,
         )
 
     @property
@@ -288,13 +314,14 @@ class Simulated(CompiledConnection):
                 "machine: replay it by zwidth.simulate"
             )
         room = frame.late + 4
-        size = _PLANT + STATE_SIZE + WORK + 4 * room + force.size + anchor.size + target.size
-        opened = blank(ARRAYS - OWN + size, 1, 1)
+        numbers, work = (setup.plant_numbers, WORK) if setup.two is None else (setup.two, WORK_OF_TWO)
+        parts = (numbers, setup.state, np.zeros(work + 4 * room), force, anchor, target)
+        opened = blank(ARRAYS - OWN + sum(part.size for part in parts), 1, 1)
         s = opened.memory
         s[SAMPLES], s[STEP], s[DELAY] = frame.samples, float(frame.period), float(self.device.exact("delay"))
         s[COUNT], s[SHIFT], s[ROOM] = frame.resolution, setup.encoder_phase, room
         s[FORCES], s[ANCHORS], s[TARGETS] = force.size, anchor.size, target.size
-        parts = (setup.plant_numbers, setup.state, np.zeros(WORK + 4 * room), force, anchor, target)
+        s[TWO] = float(setup.two is not None)
         s[ARRAYS:] = np.concatenate(parts)
         return opened
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Sequence
+from math import isnan
 from threading import Lock
 from typing import NamedTuple, Protocol
 
@@ -227,7 +228,7 @@ class Tally:
             f"at {self._last.times[-1]:.1f} s",
             f"{1e3 * curve[POSITION]:+.3f} {self._units[0]}",
             f"{self._force_scale * curve[FORCE]:+.3f} {self._units[1]}",
-            f"margin {1e3 * curve[MARGIN]:+.3f} mJ",
+            "margin not seen" if isnan(curve[MARGIN]) else f"margin {1e3 * curve[MARGIN]:+.3f} mJ",
             f"late by {1e6 * curve[LATENESS]:.0f} µs, {1e6 * self._longest:.0f} µs at most",
             f"{self._missed} deadlines missed",
         ]

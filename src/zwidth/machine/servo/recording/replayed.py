@@ -21,6 +21,7 @@ from zwidth.data.logs.contents import COLUMNS, ROWS_LOST
 from zwidth.errors import InputError
 from zwidth.loop.simulate import simulate, simulated
 from zwidth.loop.timing import Timing
+from zwidth.machine.servo.proving import least_friction
 from zwidth.machine.servo.recording.recording import Recording
 from zwidth.machine.servo.ring import SERVING
 from zwidth.model.device import Device
@@ -32,7 +33,6 @@ from zwidth.model.operator.prescribed_motion import PrescribedMotion
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.native.compiled import Array
-from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit
 
 if TYPE_CHECKING:
@@ -246,13 +246,15 @@ def _touches(event: dict[str, object], low: float, high: float) -> bool:
 def _loop(
     recording: Recording, device: Device | None, environment: object, law: int
 ) -> tuple[Device, Environment]:
-    """What was served, as it is given or as the recording says; of its friction the least."""
+    """What was served, as it is given or as the recording says; of its friction the least.
+
+    Behind a transmission the law is that of one mass, where the encoder is.
+    """
     if device is None or environment is None:
         said = recording.specification(law)
         device = said.device if device is None else device
         environment = said.environment if environment is None else environment
-    low = {key: ends(getattr(device, key))[0] for key in ("damping", "coulomb_friction", "delay")}
-    return device.replace(stiction=None, **low), as_environment(environment)
+    return least_friction(device), as_environment(environment)
 
 
 def _since_first(late: Array, period: float) -> Array:
