@@ -248,8 +248,10 @@ def _recording(
         if any(finding.kind == "episodes" for finding in log.findings):
             looked += '; sheet="0" and so on chooses an episode'
         supposed = (looked, *supposed)
-    asked = None if commanded is None else _longest(commanded).actuator_force
-    given = None if applied is None else _longest(applied).actuator_force
+    own = {log: _longest(log) for log in (commanded, applied) if log is not None}
+    if len({(block.time.size, float(block.time[0])) for block in own.values()}) > 1:
+        raise InputError(_APART.format(*(_rows_of(block) for block in own.values())))
+    asked, given = (None if log is None else own[log].actuator_force for log in (commanded, applied))
     if asked is not None and given is not None and _against(asked, given):
         given = -given
         supposed = (*supposed, _AGAINST)
@@ -275,6 +277,17 @@ def _at(run: Block, runs: int, target: Log | float) -> Array:
     blocks = [block for block in target.blocks() if target.runs != runs or block.run == run.run]
     known = np.concatenate([block.time for block in blocks])
     return np.asarray(np.interp(run.time, known, np.concatenate([block.position for block in blocks])))
+
+
+_APART = (
+    "the two forces are not recorded side by side: the longest stretch without a gap has {} of the command and "
+    "{} of the motor's force, and what lies between them is found row by row; record both at every sample, or "
+    'leave the sparser one out: columns={{"actuator_force": None}}, columns={{"commanded_force": None}}'
+)
+
+
+def _rows_of(block: Block) -> str:
+    return f"{block.time.size} rows from {block.time[0]:.4g} s"
 
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"
