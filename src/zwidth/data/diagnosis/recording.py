@@ -280,9 +280,10 @@ def _at(run: Block, runs: int, target: Log | float) -> Array:
 
 
 _APART = (
-    "the two forces are not recorded side by side: the longest stretch without a gap has {} of the command and "
-    "{} of the motor's force, and what lies between them is found row by row; record both at every sample, or "
-    'leave the sparser one out: columns={{"actuator_force": None}}, columns={{"commanded_force": None}}'
+    "the two forces are not recorded side by side: the longest stretch without a gap has {} of the command "
+    "and {} of the motor's force, and what lies between them is found row by row; record both at every "
+    'sample, or leave the sparser one out: columns={{"actuator_force": None}}, '
+    'columns={{"commanded_force": None}}'
 )
 
 
