@@ -248,10 +248,11 @@ def _recording(
         if any(finding.kind == "episodes" for finding in log.findings):
             looked += '; sheet="0" and so on chooses an episode'
         supposed = (looked, *supposed)
-    own = {log: _longest(log) for log in (commanded, applied) if log is not None}
-    if len({(block.time.size, float(block.time[0])) for block in own.values()}) > 1:
-        raise InputError(_APART.format(*(_rows_of(block) for block in own.values())))
-    asked, given = (None if log is None else own[log].actuator_force for log in (commanded, applied))
+    own = [None if each is None else _longest(each) for each in (commanded, applied)]
+    rows = [f"{block.time.size} rows from {block.time[0]:.4g} s" for block in own if block is not None]
+    if len(set(rows)) > 1:
+        raise InputError(_APART.format(*rows))
+    asked, given = (None if block is None else block.actuator_force for block in own)
     if asked is not None and given is not None and _against(asked, given):
         given = -given
         supposed = (*supposed, _AGAINST)
@@ -285,11 +286,6 @@ _APART = (
     'sample, or leave the sparser one out: columns={{"actuator_force": None}}, '
     'columns={{"commanded_force": None}}'
 )
-
-
-def _rows_of(block: Block) -> str:
-    return f"{block.time.size} rows from {block.time[0]:.4g} s"
-
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"
 _ALIKE = 0.1
