@@ -102,7 +102,6 @@ REFUSED = {
     "serve": lambda d: zw.serve(d, WALL, hand=zw.operators.Finger(), duration=0.1),
     "port": lambda d: zw.links.NaiveWaves(d),
     "links": lambda d: zw.links.compare(d),
-    "plan": lambda d: zw.plan(d, force_noise=0.01),
     "stability": lambda d: zw.stability.coupled_stability(d, WALL, zw.operators.Finger()),
     "absolute": lambda d: zw.stability.absolute_stability(d, zw.operators.Finger()),
     "activity": lambda d: zw.stability.tolerated_activity(d, WALL),

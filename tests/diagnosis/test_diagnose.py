@@ -159,6 +159,16 @@ def test_a_file_without_the_force_it_takes_is_refused(tmp_path, forces, message)
         zw.diagnose(written(tmp_path / "log.csv", columns))
 
 
+def test_forces_that_are_not_recorded_side_by_side_are_told_apart_from_a_fault(tmp_path):
+    """A stretch in which one of them is missing: the rows of the two do not belong together."""
+    trace = released(paddle(), centring(900), 0.4)
+    trace.actuator_force[150:155] = np.nan
+    path = log_of(tmp_path / "gap.csv", trace, *BOTH)
+    with pytest.raises(zw.InputError, match=r"401 rows from 0 s of the command and 246 rows from 0\.155 s"):
+        zw.diagnose(path, paddle())
+    assert zw.diagnose(path, paddle(), columns={"actuator_force": None}).seen.recorded == "command"
+
+
 def test_both_forces_of_a_served_loop_are_known():
     """What the law wished for and what was given, by the names that a recording of `zwidth serve` has."""
     columns = {name: np.arange(600) * 1e-3 for name in ("time_s", "position_m", "wished_force_N", "force_N")}

@@ -156,3 +156,8 @@ def ends(value: Exact | Interval) -> tuple[Fraction, Fraction]:
     if isinstance(value, Interval):
         return value.low.fraction, value.high.fraction
     return value.fraction, value.fraction
+
+
+def middle(value: Exact | Interval | None) -> float | None:
+    """Of the ends, rounded; None of what is unknown."""
+    return None if value is None else float(sum(ends(value))) / 2

@@ -163,3 +163,53 @@ def test_no_time_is_refused():
 def test_of_an_interval_the_middle_is_the_guess():
     wide = zw.plan(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
     assert wide.seconds == pytest.approx(zw.plan(paddle(), force_noise=0.1).seconds)
+
+
+CABLE = {"stiffness": 2131.8, "damping": 0.02, "handle_mass": 0.02, "handle_damping": 0.09}
+
+
+def on_a_cable(**other):
+    device = zw.Device(mass=0.03, damping=0.06, coulomb_friction=0.004, rate=1000)
+    cable = CABLE | {"handle_coulomb_friction": 0.006} | other
+    return device.replace(transmission=zw.Transmission(**cable))
+
+
+def test_a_device_on_a_cable_is_planned_as_both_sides_together():
+    """Strokes by hand tell the sums; what tells the sides apart is asked for besides."""
+    one = zw.Device(mass=0.05, damping=0.15, coulomb_friction=0.01, rate=1000)
+    plan, plain = (zw.plan(device, force_noise=0.02) for device in (on_a_cable(), one))
+    assert plan.seconds == pytest.approx(plain.seconds, rel=1e-9)
+    assert plan.force == pytest.approx(plain.force, rel=1e-9)
+    text = repr(plan)
+    assert text.startswith(repr(plain))
+    for said in ("some 0.05 N, drawn anew every other sample, for 60 s", "guess 42.4 Hz", "guess 67.1 Hz"):
+        assert said in text
+    assert "guess" not in repr(zw.plan(on_a_cable(stiffness=None), force_noise=0.02)).split("together")[1]
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_tap_yields_what_the_plan_says(held):
+    """f_held = √(k/m₁)/2π, dying out as δ = (b₁ + c)/2m₁; free √(k (1/m₁ + 1/m₂))/2π."""
+    free = on_a_cable(handle_coulomb_friction=0).replace(coulomb_friction=0)
+    time, hand = np.arange(400) / 1000, zw.operators.RecordedForce([5] + [0] * 401)
+    if held:  # the tap is a small step of the handle, which then stands
+        hand = zw.operators.PrescribedMotion([2e-4, *np.zeros(402)])
+    trace = zw.simulate(free, zw.Wall(0.0), hand, 0.402)
+    motor = trace.motor_position.values[2:402]
+    left = motor - (0 if held else trace.position.values[2:402])  # how far the cable is drawn
+    f = free.transmission.rings(free.mass)[0 if held else 1]
+    delta = (0.06 + 0.02) / 0.06
+
+    def model(f, delta):
+        way = np.exp(-delta * time)[:, None]
+        waves = np.stack([np.sin(2 * np.pi * f * time), np.cos(2 * np.pi * f * time)], axis=1)
+        return np.sum(np.linalg.lstsq(way * waves, left, rcond=None)[1])
+
+    if held:
+        assert model(f, delta) < 1e-3 * min(
+            model(f * 1.02, delta), model(f, 1.3 * delta), model(f, delta / 2)
+        )
+    else:
+        assert min(np.linspace(0.9 * f, 1.1 * f, 201), key=lambda g: model(g, 2.0)) == pytest.approx(
+            f, rel=0.01
+        )

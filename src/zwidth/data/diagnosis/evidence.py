@@ -37,7 +37,7 @@ from zwidth.data.diagnosis.vibration import Vibration, phasors
 from zwidth.model.device import Device, require_rigid
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
-from zwidth.quantity.exact import ends
+from zwidth.quantity.exact import middle
 from zwidth.quantity.glossary import GLOSSARY
 
 TERMS = (
@@ -71,20 +71,13 @@ class Known:
             return cls()
         require_rigid(device, "a diagnosis")
         return cls(
-            mass=_middle(device.mass),
-            damping=_middle(device.damping),
-            coulomb=_middle(device.coulomb_friction),
-            resolution=_middle(device.resolution) or None,
-            period=_middle(device.sample_period),
-            delay=_middle(device.delay) or 0.0,
+            mass=middle(device.mass),
+            damping=middle(device.damping),
+            coulomb=middle(device.coulomb_friction),
+            resolution=middle(device.resolution) or None,
+            period=middle(device.sample_period),
+            delay=middle(device.delay) or 0.0,
         )
-
-
-def _middle(number: object) -> float | None:
-    if number is None:
-        return None
-    low, high = ends(number)  # type: ignore[arg-type]
-    return float(low + high) / 2
 
 
 @dataclass(frozen=True, kw_only=True)

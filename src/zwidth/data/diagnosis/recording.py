@@ -248,8 +248,11 @@ def _recording(
         if any(finding.kind == "episodes" for finding in log.findings):
             looked += '; sheet="0" and so on chooses an episode'
         supposed = (looked, *supposed)
-    asked = None if commanded is None else _longest(commanded).actuator_force
-    given = None if applied is None else _longest(applied).actuator_force
+    own = [None if each is None else _longest(each) for each in (commanded, applied)]
+    rows = [f"{block.time.size} rows from {block.time[0]:.4g} s" for block in own if block is not None]
+    if len(set(rows)) > 1:
+        raise InputError(_APART.format(*rows))
+    asked, given = (None if block is None else block.actuator_force for block in own)
     if asked is not None and given is not None and _against(asked, given):
         given = -given
         supposed = (*supposed, _AGAINST)
@@ -276,6 +279,13 @@ def _at(run: Block, runs: int, target: Log | float) -> Array:
     known = np.concatenate([block.time for block in blocks])
     return np.asarray(np.interp(run.time, known, np.concatenate([block.position for block in blocks])))
 
+
+_APART = (
+    "the two forces are not recorded side by side: the longest stretch without a gap has {} of the command "
+    "and {} of the motor's force, and what lies between them is found row by row; record both at every "
+    'sample, or leave the sparser one out: columns={{"actuator_force": None}}, '
+    'columns={{"commanded_force": None}}'
+)
 
 _AGAINST = "the motor's force is the command with the other sign: both are taken to count alike"
 _ALIKE = 0.1

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import pi, sqrt
 from typing import Any, Literal
 
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.exact import Exact, Interval, middle
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import Parametric, Uncertain, UncertainOrNone, parameter, parameters_of, word
 
@@ -96,6 +97,15 @@ class Transmission(Parametric):
     def replace(self, **changes: Any) -> Transmission:
         """The same with some arguments changed."""
         return replace(self, **changes)
+
+    def rings(self, mass: Exact | Interval | None) -> tuple[float | None, float | None]:
+        """Where a motor of mass m₁ swings on it with the handle held, √(k/m₁)/2π, and with nobody there,
+        √(k (1/m₁ + 1/m₂))/2π [Hz]; of intervals the middles, None where not known."""
+        k, motor, handle = map(middle, (self.stiffness, mass, self.handle_mass))
+        if k is None or motor is None:
+            return None, None
+        held = sqrt(k / motor) / (2 * pi)
+        return held, None if handle is None else held * sqrt(1 + motor / handle)
 
     def parameters(self) -> Mapping[str, Exact | Interval]:
         """The known numbers by name, SI."""

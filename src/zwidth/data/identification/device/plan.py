@@ -5,6 +5,11 @@
 (Abbott & Okamura 2005): of b and f_c only the one that sets the limit must be known well, and the plan gives
 the time to the speeds that tell it.  Its guess of m, b, f_c and of the noise may be poor: after each run the
 data decide, `MeasurementPlan.reached`.
+
+Of a device on a cable a hand that moves the handle tells the sums of both sides.  Three recordings tell them
+apart: the motor shaken, the handle free; the handle held and tapped; the handle free and tapped,
+
+    ω_held² = k/m₁,   ω_free² = k (1/m₁ + 1/m₂),   so   m₁/m₂ = (ω_free/ω_held)² − 1 .
 """
 
 from __future__ import annotations
@@ -19,11 +24,12 @@ from scipy.special import ndtri
 
 from zwidth.data.identification.device.identify import Identified
 from zwidth.data.identification.device.moments import SECONDS
+from zwidth.data.identification.device.two_masses import MOST
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.native.compiled import Array
-from zwidth.quantity.exact import Interval, ends
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.exact import Interval, ends, middle
+from zwidth.quantity.text import shown, told_quantity
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -58,6 +64,8 @@ class MeasurementPlan:
         Of that interval.
     speed
         Up to which friction is to be seen, both ways [m/s; rad/s]; None: nothing is asked.
+    apart
+        The device as it was guessed, where motor and handle move apart: `guess` is then both in one.
     """
 
     limits: Literal["damping", "coulomb_friction"]
@@ -68,6 +76,7 @@ class MeasurementPlan:
     precision: float
     confidence: float
     speed: float | None = None
+    apart: Device | None = None
 
     def errors(self, seconds: float) -> dict[str, float]:
         """Standard errors of mass, damping and Coulomb friction to expect after so much recorded motion.
@@ -139,6 +148,35 @@ def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     )
     runs = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
     yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
+    if plan.apart is not None:
+        yield from _each_side(plan, plan.apart)
+
+
+def _each_side(plan: MeasurementPlan, device: Device) -> Iterator[str]:
+    """What tells motor and handle apart, and what each recording yields."""
+    period, dry = (float(plan.guess.exact(name)) for name in ("sample_period", "coulomb_friction"))
+    assert device.transmission is not None
+    rings = device.transmission.rings(device.mass)
+    held, free = (f", by the guess {shown(f, 'Hz', 3)}" if f else "" for f in rings)
+    shake = told_quantity(5 * dry, "force", device.motion, 2)
+    yield (
+        "So far m, b and f_c are those of motor and handle together, and walls rest on the motor's alone: "
+        "b₁ + c b₂/(c + b₂). Record each of these too, the encoder at the motor, in a file of its own."
+    )
+    yield (
+        f"· Nobody at the handle. Let the motor make slow strokes and on top a force of some {shake}, drawn "
+        f"anew every other sample, for {MOST * period:.2g} s; identify it with the actuator's force alone: "
+        "m, b and f_c of each side, k and c."
+    )
+    yield (
+        f"· Clamp the handle, motor off, tap the motor. It rings at f_held = √(k/m₁)/2π{held}, and where the "
+        "swing is large against dry friction dies out as e^(−δt): b₁ + c = 2 m₁ δ."
+    )
+    yield (
+        f"· Nobody at the handle, motor off, tap it. Both ring at f_free = √(k (1/m₁ + 1/m₂))/2π{free}: "
+        "m₁/m₂ = (f_free/f_held)² − 1; with m₁ + m₂ from the strokes each mass, and k = m₁ (2π f_held)²."
+    )
+    yield "Where these differ, more gives way than one spring: take the cable off, and rely on the motor's b."
 
 
 def _reached(plan: MeasurementPlan) -> str:
@@ -180,7 +218,8 @@ def plan_identification(
     ----------
     guess
         A device with mass, damping, Coulomb friction, resolution and sample period, of intervals the
-        middle; or what a first run showed.
+        middle; or what a first run showed.  Of one with a transmission the plan says what tells both sides
+        apart too.
     force_noise
         σ > 0 of the measured force, per sample [N; N·m]; None: what the first run showed.
     length
@@ -200,7 +239,8 @@ def plan_identification(
     InputError
         If a number is outside its bound, or the guess lacks one.
     """
-    device = _middle(guess.device(None) if isinstance(guess, Identified) else guess)
+    whole = guess.device(None) if isinstance(guess, Identified) else guess
+    device = _as_one(whole)
     if force_noise is None:
         if not isinstance(guess, Identified):
             raise InputError("force_noise is needed with a guessed device: σ of the load cell per sample [N]")
@@ -232,12 +272,18 @@ def plan_identification(
         precision=precision,
         confidence=confidence,
         speed=speed,
+        apart=None if whole.transmission is None else whole,
     )
 
 
-def _middle(device: Device) -> Device:
-    intervals = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
-    return device.replace(**{k: float(v.low + v.high) / 2 for k, v in intervals.items()})
+def _as_one(device: Device) -> Device:
+    """Of each number the middle, and of both sides of a transmission the sum: what a hand moves."""
+    sums = {k: middle(v) for k, v in device.parameters().items() if isinstance(v, Interval)}
+    behind = {} if device.transmission is None else device.transmission.parameters()
+    for name in PARAMETERS:
+        if f"handle_{name}" in behind and (own := middle(getattr(device, name))) is not None:
+            sums[name] = own + (middle(behind[f"handle_{name}"]) or 0.0)
+    return device.motor_side.replace(**sums)
 
 
 def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
