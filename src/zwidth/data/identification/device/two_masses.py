@@ -52,6 +52,9 @@ ONE = 4
 STEPS, FINE = 4, 12
 """Of a sample, friction striking at each: while the numbers are looked for, and at the end."""
 
+AT_ONCE = 6e-4
+"""Of a sample that is gone through at once, where neither side turns [s]: a swing of 400 Hz takes four."""
+
 FIRST, SHORT, LONG = 24, 48, 160
 """Samples of a window: short ones first, in which no start is a cycle of the swing off."""
 
@@ -138,21 +141,46 @@ def _slowed(before: float, after: float, strike: float) -> float:
 
 @compiled
 def _swing(
-    flow: Array, push: Array, strikes: Array, force: Array, late: int, steps: int, begin: Array, found: Array
+    whole: Array,
+    flow: Array,
+    strikes: Array,
+    force: Array,
+    late: int,
+    parts: int,
+    steps: int,
+    begin: Array,
+    found: Array,
 ) -> None:
-    """The motor's position at each sample of each window, from the state at its beginning."""
+    """The motor's position at each sample of each window, from the state at its beginning: a part of a sample at
+    once where neither side turns in it, else in steps."""
     for w in range(begin.shape[0]):
         x, v, y, u = begin[w, 0], begin[w, 1], begin[w, 2], begin[w, 3]
         for i in range(found.shape[1]):
             found[w, i] = x
-            for j in range(steps):
-                f = force[w, i + 1] if j >= late else force[w, i]
-                a = flow[0, 0] * x + flow[0, 1] * v + flow[0, 2] * y + flow[0, 3] * u + push[0] * f
-                b = flow[1, 0] * x + flow[1, 1] * v + flow[1, 2] * y + flow[1, 3] * u + push[1] * f
-                c = flow[2, 0] * x + flow[2, 1] * v + flow[2, 2] * y + flow[2, 3] * u + push[2] * f
-                d = flow[3, 0] * x + flow[3, 1] * v + flow[3, 2] * y + flow[3, 3] * u + push[3] * f
-                x, y = a, c
-                v, u = _slowed(v, b, strikes[0]), _slowed(u, d, strikes[1])
+            for part in range(parts):
+                first = part * steps
+                f = force[w, i + 1] if first >= late else force[w, i]
+                p = 1.0 if v > 0 else -1.0
+                q = 1.0 if u > 0 else -1.0
+                b = whole[1, 0] * x + whole[1, 1] * v + whole[1, 2] * y + whole[1, 3] * u
+                b += whole[1, 4] * f + whole[1, 5] * p + whole[1, 6] * q
+                d = whole[3, 0] * x + whole[3, 1] * v + whole[3, 2] * y + whole[3, 3] * u
+                d += whole[3, 4] * f + whole[3, 5] * p + whole[3, 6] * q
+                if v * b > 0 and u * d > 0 and (first >= late or first + steps <= late):
+                    a = whole[0, 0] * x + whole[0, 1] * v + whole[0, 2] * y + whole[0, 3] * u
+                    c = whole[2, 0] * x + whole[2, 1] * v + whole[2, 2] * y + whole[2, 3] * u
+                    x = a + whole[0, 4] * f + whole[0, 5] * p + whole[0, 6] * q
+                    y = c + whole[2, 4] * f + whole[2, 5] * p + whole[2, 6] * q
+                    v, u = b, d
+                else:
+                    for j in range(first, first + steps):
+                        f = force[w, i + 1] if j >= late else force[w, i]
+                        a = flow[0, 0] * x + flow[0, 1] * v + flow[0, 2] * y + flow[0, 3] * u + flow[0, 4] * f
+                        b = flow[1, 0] * x + flow[1, 1] * v + flow[1, 2] * y + flow[1, 3] * u + flow[1, 4] * f
+                        c = flow[2, 0] * x + flow[2, 1] * v + flow[2, 2] * y + flow[2, 3] * u + flow[2, 4] * f
+                        d = flow[3, 0] * x + flow[3, 1] * v + flow[3, 2] * y + flow[3, 3] * u + flow[3, 4] * f
+                        x, y = a, c
+                        v, u = _slowed(v, b, strikes[0]), _slowed(u, d, strikes[1])
 
 
 @dataclass(frozen=True)
@@ -196,7 +224,7 @@ class _Windows:
     def swing(self, values: Array, begin: Array) -> Array:
         """Positions of the motor, of one mass or of two."""
         m, b, f, offset = values[:ONE]
-        rates, strikes, step = np.zeros((5, 5)), np.array([f / m, 0.0]), self.period / self.steps
+        rates, strikes = np.zeros((7, 7)), np.array([f / m, 0.0])
         rates[0, 1], rates[1, 1], rates[1, 4] = 1.0, -b / m, -1 / m
         if values.size > ONE:
             other, damping, friction, k, c = values[ONE:]
@@ -204,10 +232,14 @@ class _Windows:
             rates[2, 3] = 1.0
             rates[3, :4] = np.array([k, c, -k, -c - damping]) / other
             strikes[1] = friction / other
+        rates[1, 5], rates[3, 6] = -strikes
+        parts = next(n for n in (1, 2, 4, self.steps) if self.period / n <= AT_ONCE or n == self.steps)
+        step, steps = self.period / self.steps, self.steps // parts
         flow = _exponential(rates * step)
-        found = np.empty(self.read.shape)
-        within, push = (np.ascontiguousarray(part) for part in (flow[:4, :4], flow[:4, 4]))
-        _swing(within, push, strikes * step, self.force + offset, self.late, self.steps, begin, found)
+        whole, found = np.linalg.matrix_power(flow, steps), np.empty(self.read.shape)
+        _swing(
+            whole, flow, strikes * step, self.force + offset, self.late, parts, steps, begin, found
+        )
         return found
 
     def starting(self, values: Array) -> _Fit:
