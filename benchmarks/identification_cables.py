@@ -27,8 +27,8 @@ from scipy.linalg import expm
 import zwidth as zw
 from zwidth.data.logs import Log
 
-STEP = 50e-6
-TICK = 5
+STEP = 25e-6
+TICK = 10
 """Steps of the shortest sample."""
 BATCH = 100
 KINDS = ("held", "tapped", "free", "shaken")
