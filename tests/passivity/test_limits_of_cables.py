@@ -84,5 +84,5 @@ def test_lateness_costs_what_holds_for_every_cable():
     """2b₁/(T + L); with the encoder at the handle that proves nothing, which is said before the wait."""
     assert stiffness_cost(as_one_body(DEVICE), zw.Wall(100), 0.0).nominal == 120
     at_handle = DEVICE.replace(transmission=CABLE.replace(encoder="handle"))
-    with pytest.raises(zw.InputError, match="encoder at the handle"):
+    with pytest.raises(zw.InputError, match="proves nothing where the encoder is at the handle"):
         doctor(at_handle, zw.Wall(100), duration=60)

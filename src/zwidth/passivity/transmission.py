@@ -8,6 +8,8 @@ viscous friction that is, whatever the hand does with its own side,
 a loop that is passive with this damping and the Coulomb friction of the motor's side alone is passive for
 every stiffness and every mass behind the motor, of any law and however contact is made.  Where that is not
 enough, a linear law on a transmission that is known is decided by the criterion of `linear.transmission`.
+Of the handle's side its damping alone is in it: a mass returns what it takes, dry friction takes more, and so
+does more damping, of the same motion of the handle.  So the least damping proves, and the most refutes.
 A violation holds whatever Coulomb friction and encoder are: a large motion outweighs both.  A proof is of
 viscous friction and an ideal encoder: Coulomb friction on the motor changes how it moves, and what that does
 to a hand behind a cable is not proved.
@@ -52,6 +54,10 @@ _UNCONFIRMED = "A proof was found, but the independent checker did not confirm i
 _HIDDEN = (
     "Numerator and denominator of H(z) share a root on or outside the unit circle: the controller carries a "
     "mode that never dies out. Cancel it and check again."
+)
+_DEPENDS = (
+    "With the least damping of transmission.handle_damping a hand takes energy out; that it does so "
+    "with the most is not shown: give a smaller interval."
 )
 _IF_IDEAL = (
     "With viscous friction alone and an ideal encoder this loop is passive. With the Coulomb friction of the "
@@ -124,7 +130,10 @@ class TransmissionVerdict(Verdict):
         proved = [self.max_stiffness_any_transmission, own]
         return max((k for k in proved if k is not None), default=None)
 
-    stiffest = max_stiffness
+    @property
+    def stiffest(self) -> float | None:
+        """The largest K that `check` calls passive, of contact as it was asked [N/m; N·m/rad]."""
+        return self.max_stiffness
 
     @property
     @answers(
@@ -244,6 +253,11 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
     decision = decide_elastic(elastic)
     setting = _setting(device, law, elastic)
     if isinstance(decision, ElasticRefutation):
+        elastic = elastic_of(device, law, 1)  # more damping at the handle takes more of every motion
+        most = None if elastic is None else decide_elastic(elastic)
+        if elastic is None or not isinstance(most, ElasticRefutation):
+            return replace(found, open=_DEPENDS)
+        decision = most
         violation = ElasticViolation(elastic, setting, decision)
         if decision.reason == "too close to zero" or not violation.verify():
             return replace(found, open=_TOO_CLOSE)
@@ -265,13 +279,13 @@ def _unknown(given: Transmission, device: Device, law: Environment) -> str:
     """Why the criterion of motor, transmission and hand cannot be asked."""
     if not law.has_transfer_function or (law.clamped and not law.spring):
         why = "of this law, which is not linear inside, a transmission leaves no other proof known"
-    elif not (device.is_certain and law.is_certain):
-        why = "with intervals no more is proved: give single values"
+    elif names := _intervals(given, device, law):
+        why = f"no more is proved of an interval of {names}: give single values, zwidth sweep asks of many"
     elif given.stiffness is None:
         why = "of a transmission whose stiffness is not known no more is proved: give transmission.stiffness"
     elif device.mass is None:
         why = "give the mass of the motor's side, with which it swings on its transmission"
-    elif _certain(given.damping) + _certain(given.handle_damping):
+    elif _certain(given.damping) + ends(given.handle_damping)[0]:
         why = "of one so stiff, or with so little friction behind it, no more is decided"
     else:
         why = "friction inside the transmission or on the hand's side is needed for more: give it"
@@ -282,17 +296,28 @@ def _unknown(given: Transmission, device: Device, law: Environment) -> str:
     return f"{first}; {why}."
 
 
-def elastic_of(device: Device, law: Environment) -> Elastic | None:
-    """The loop with its transmission; None where not all of it is known, or the law is not linear."""
+def _intervals(given: Transmission, device: Device, law: Environment) -> str:
+    """Of what a single value is needed, in words."""
+    own = {f"transmission.{key}": getattr(given, key) for key in ("stiffness", "damping")}
+    known = {**device.parameters(), **own}
+    names = [name for name, value in known.items() if isinstance(value, Interval)]
+    return ", ".join([*names, *(() if law.is_certain else ("the environment",))])
+
+
+def elastic_of(device: Device, law: Environment, end: int = 0) -> Elastic | None:
+    """The loop with its transmission; None where not all of it is known, or the law is not linear.
+
+    Of an interval of damping at the handle it has the lower end, or the upper one with `end` = 1.
+    """
     given = device.transmission
     if given is None or given.stiffness is None or device.mass is None:
         return None
-    if not (law.has_transfer_function and device.is_certain and law.is_certain):
+    if not law.has_transfer_function or _intervals(given, device, law):
         return None
     if law.clamped and not law.spring:
         return None
     loop = linear_loop(device.motor_side, law)
-    inside, outside = (_certain(value) for value in (given.damping, given.handle_damping))
+    inside, outside = _certain(given.damping), ends(given.handle_damping)[end]
     if not (inside + outside and loop.damping + outside):
         return None
     at_handle = given.encoder == "handle"

@@ -138,8 +138,8 @@ def doctor(
     if device is not None:
         if device.transmission is not None and device.transmission.encoder == "handle":
             raise InputError(
-                "what lateness costs is told of the motor's friction, and that proves nothing with the encoder "
-                "at the handle: give --rate alone, in Python sample_period"
+                "what lateness costs is told of the motor's friction, which proves nothing where the encoder "
+                "is at the handle: give --rate alone, in Python sample_period"
             )
         device = as_one_body(device.replace(sample_period=period))
         law = environment or Wall(stiffness=1)
