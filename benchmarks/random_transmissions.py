@@ -29,8 +29,6 @@ from transmission_lifted import Lifted, Plant
 
 NEAR, CLEAR = Fraction(1, 10**6), Fraction(1, 1000)
 EVERY = 8
-STIFFEST = 400
-"""Radians of the motor in a sample, beyond which the checker's work is too much."""
 LARGEST_TURN = 30
 """Beyond it a period would have to be cut into too many pieces."""
 
@@ -90,7 +88,7 @@ class Loops:
         while True:
             self.device = plant(rng)
             self.law = law(rng, float(self.device.sample_period))
-            if self.elastic(Fraction(1)).turn < STIFFEST:
+            if elastic_of(self.device, self.at(Fraction(1))):  # None of one too stiff for its rate
                 break
         loop = self.elastic(Fraction(1)).loop
         self.start = float((loop.damping + self.device.transmission.handle_damping.fraction) / loop.period)
