@@ -88,7 +88,7 @@ class Loops:
         while True:
             self.device = plant(rng)
             self.law = law(rng, float(self.device.sample_period))
-            if elastic_of(self.device, self.law):  # not too stiff to be decided
+            if elastic_of(self.device, self.at(Fraction(1))):  # None of one too stiff for its rate
                 break
         loop = self.elastic(Fraction(1)).loop
         self.start = float((loop.damping + self.device.transmission.handle_damping.fraction) / loop.period)

@@ -18,13 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import acos, isqrt, pi
+from math import acos, isqrt, perm, pi
 from typing import NamedTuple
 
 from ..document.fields import Choice, Number, OneOf, Read, Record, document, numbers
 from ..document.number import DAMPING, MASS, STIFFNESS, about
 from ..document.refusal import Invalid, spend
-from ..exact.enclosed import Enclosed, dot, known, quotient
+from ..exact.enclosed import Enclosed, known, quotient
 from ..exact.positivity import POSITIVITY, require_nonnegative
 from ..exact.roots import decay_in_powers, inside_unit_circle
 from .linear import cosine_sums, require_coprime
@@ -159,24 +159,24 @@ def _criterion(p: Loop, told: Read) -> Polynomial:
     n0, n1, n2 = form.dissipated
     trace, product = n1 / n2, n0 / n2
     sums = _Roots(trace, product, _bits(abs(trace) + Fraction(isqrt(int(product)) + 1), p))
-    at = sums.at
-    q = sums.form()
+    at, late = sums.at, p.part
+    (whole, rise), *waves = sums.waves(late, 2)
+    q = sums.form(whole)
     fall: Polynomial = [at(Fraction(2)), at(Fraction(-2))]
 
     def over(top: Sequence[Fraction]) -> Polynomial:
         """2(1 − x) q Σ top(λ)/(2λn)."""
         rest = _rest(form.dissipated, top)
-        more = _product(fall, sums.rest(rest, sums.whole[1], 4 * n2))
+        more = _product(fall, sums.rest(rest, rise, whole, 4 * n2))
         return _plus(_scaled(q, at(top[0] / n0 / 2)), more)
 
-    v, late = form.moved, p.part
+    v = form.moved
     even, odd = (
         _rest(form.dissipated, (v[0], -v[2], Fraction(0))),
         _rest(form.dissipated, (v[1], -v[3], Fraction(0))),
     )
     early_rest, late_rest = (
-        (sums.rest(even, sums.rise(time), -4 * n2), sums.rest(odd, sums.stay(time), -4 * n2))
-        for time in (1 - late, late)
+        (sums.rest(even, rise, whole, -4 * n2), sums.rest(odd, stay, whole, -4 * n2)) for stay, rise in waves
     )
     still, swing = v[0] / n0 / 2, v[1] / n0 / 2
     x = _plus(_scaled(q, at(-still * (1 - late) - swing)), _product(fall, _plus(*early_rest)))
@@ -217,66 +217,59 @@ def _bits(size: Fraction, p: Loop) -> int:
 
 
 class _Roots:
-    """Functions of K, as a + b K/σ, σ² near d; and Σ over n made of them."""
+    """Functions of K with K² = t K − d, as a + b K; and Σ over n made of them."""
 
     def __init__(self, trace: Fraction, product: Fraction, bits: int) -> None:
-        self.bits = bits
-        self.sigma = Fraction(2) ** ((isqrt(max(int(product), 1)).bit_length()) - 1)
+        self.bits, self.exact = bits, (trace, product)
         self.trace, self.product = self.at(trace), self.at(product)
-        self.matrix = (
-            (self.at(Fraction(0)), self.at(-product / self.sigma)),
-            (self.at(self.sigma), self.at(trace)),
-        )
-        self.whole = self.stay(Fraction(1)), self.rise(Fraction(1))
 
     def at(self, value: Fraction) -> Enclosed:
         return known(value, self.bits)
 
-    def stay(self, time: Fraction) -> Pair:
-        """cosh(√K time), as a + b K."""
-        return self._even(time, 0)
+    def waves(self, part: Fraction, step: int) -> list[tuple[Pair, Pair]]:
+        """Over a sample, over what is left of it after a part, and over the part."""
+        times = Fraction(1), 1 - part, part
+        found = {time: self._wave(time, step) for time in set(times)}
+        return [found[time] for time in times]
 
-    def rise(self, time: Fraction) -> Pair:
-        """sinh(√K time)/√K."""
-        return self._even(time, 1)
+    def _wave(self, time: Fraction, step: int) -> tuple[Pair, Pair]:
+        """Σ_j K^j t^n/n! and Σ_j K^j t^(n+1)/(n+1)!, n = j step: exp and its integral; or cosh √K t and
+        sinh(√K t)/√K.
 
-    def _even(self, time: Fraction, first: int) -> Pair:
-        one = (self.at(Fraction(1)), self.at(Fraction(0)))
-        a, b = series(self.matrix, one, time, first, 2)
-        return a, b * self.at(1 / self.sigma)
+        In whole numbers, as a + b K/σ, σ² near d; no sum has lost more than `off`.  Once a term is small and
+        the next ones halve, all that is left is no more than it.
+        """
+        bits, (trace, product) = self.bits, self.exact
+        sigma = Fraction(2) ** (isqrt(max(int(product), 1)).bit_length() - 1)
+        down, up, on = (self.at(x * time**step).middle for x in (product / sigma, sigma, trace))
+        norm = max(abs(down), abs(up) + abs(on)) + 2
+        a, b, n, off, r = 1 << bits, 0, 0, 8, 0
+        sums = [0, 0, 0, 0]
+        while True:
+            sums = [x + y for x, y in zip(sums, (a, b, a // (n + 1), b // (n + 1)), strict=True)]
+            factor, off = perm(n + step, step) << bits, off + r + 1
+            if max(abs(a), abs(b)) + r <= 4 and 2 * norm <= factor:
+                break
+            r = (norm * r + abs(a) + abs(b)) // factor + 2
+            a, b, n = -down * b // factor, (up * a + on * b) // factor, n + step
+        a, b, c, d = (
+            Enclosed(bits, x, (), off) * self.at(y)
+            for x, y in zip(sums, (Fraction(1), 1 / sigma, time, time / sigma), strict=True)
+        )
+        return (a, b), (c, d)
 
-    def form(self) -> Polynomial:
-        """q(x) = det(cosh √K − x)."""
-        a, b = self.whole[0]
+    def form(self, wave: Pair) -> Polynomial:
+        """det(wave − x)."""
+        a, b = wave
         tilt = self.trace * b
         return [a * a + a * tilt + self.product * (b * b), -(a.times(2) + tilt), self.at(Fraction(1))]
 
-    def rest(self, top: tuple[Fraction, Fraction], wave: Pair, over: Fraction) -> Polynomial:
+    def rest(self, top: tuple[Fraction, Fraction], wave: Pair, whole: Pair, over: Fraction) -> Polynomial:
         """q Σ (u₀ + u₁ λ)/n of the wave in the place of 2 n₂ Σ 1/(λ + K), times 2 n₂/over."""
-        a, b = self.whole[0]
+        a, b = whole
         u, w, (f, g) = self.at(top[0] / over), self.at(top[1] / over), wave
         tilted = self.product * b + self.trace * a
         return [u * (f * b - g * a) + w * (f * a + g * tilted), u * g - w * (f + self.trace * g)]
-
-
-def series(matrix: tuple[Pair, Pair], start: Pair, time: Fraction, first: int, step: int) -> Pair:
-    """Σ_j M^j v t^n/n!, n = first + j step: once a term is small and the next ones halve, all that is left is
-    no more than it."""
-    bits = start[0].bits
-    moved = tuple(tuple(x * known(time**step, bits) for x in row) for row in matrix)
-    norm = max(sum(abs(x.middle) + x.reach for x in row) for row in moved)
-    scale = known(time**first, bits)
-    term: Pair = (start[0] * scale, start[1] * scale)
-    total, n = term, first
-    while True:
-        factor = 1
-        for i in range(1, step + 1):
-            factor *= n + i
-        if max(abs(x.middle) + x.reach for x in term) <= 4 and 2 * norm <= factor << bits:
-            break
-        term = (dot(term, moved[0]).over(factor), dot(term, moved[1]).over(factor))
-        total, n = (total[0] + term[0], total[1] + term[1]), n + step
-    return tuple(Enclosed(bits, x.middle, (), x.radius + 8) for x in total)  # type: ignore[return-value]
 
 
 def _held(p: Loop, told: Read) -> bool | None:
@@ -285,26 +278,28 @@ def _held(p: Loop, told: Read) -> bool | None:
         return inside_unit_circle(p.denominator)
     t = p.period
     m, k, drag = told.mass / t**2, told.stiffness, (p.damping + told.damping) / t
-    # speeds are counted in this unit, so that position and speed are of one size
-    sigma = Fraction(2) ** (isqrt(max(int(k / m), 1)).bit_length() - 1)
-    bits = _bits((sigma + k / (m * sigma) + drag / m + 1) ** 2, p)
+    trace, product = -drag / m, k / m
+    it = _Roots(trace, product, _bits((abs(trace) + 3 * isqrt(int(product)) + 3) ** 2, p))
+    at, fall, spring = it.at, it.trace, it.product
 
-    def at(value: Fraction | int) -> Enclosed:
-        return known(Fraction(value), bits)
+    def forced(wave: Pair) -> Pair:
+        """Position and speed after a force of 1 held so long."""
+        a, b = wave
+        return b * at(1 / m), (a + fall * b) * at(1 / m)
 
-    matrix = ((at(0), at(sigma)), (at(-k / (m * sigma)), at(-drag / m)))
-    columns = [series(matrix, start, Fraction(1), 0, 1) for start in ((at(1), at(0)), (at(0), at(1)))]
-    (f11, f21), (f12, f22) = columns
-    push = (at(0), at(1 / (m * sigma)))
-    now = series(matrix, push, 1 - p.part, 1, 1)
-    before = series(matrix, push, p.part, 1, 1)
-    before = series(matrix, before, 1 - p.part, 0, 1)
-    swing = [at(1), -(f11 + f22), f11 * f22 - f12 * f21]
+    def moved(wave: Pair, state: Pair) -> Pair:
+        """A while later."""
+        (a, b), (x, v) = wave, state
+        return a * x + b * v, (a + fall * b) * v - spring * b * x
+
+    (whole, _), (early, held), (_, late) = it.waves(p.part, 1)
+    now, before = forced(held), moved(early, forced(late))
+    swing, speeded, kept = it.form(whole)[::-1], whole[1], whole[0] + fall * whole[1]
     heard = [
-        at(0),
+        at(Fraction(0)),
         now[0],
-        f12 * now[1] - f22 * now[0] + before[0],
-        f12 * before[1] - f22 * before[0],
+        speeded * now[1] - kept * now[0] + before[0],
+        speeded * before[1] - kept * before[0],
     ]
     n, d = (([at(c) for c in in_whole_numbers(part, p)]) for part in (p.numerator, p.denominator))
     closed = _plus(_product(d, swing), _product([at(0)] * p.whole + n, heard))
