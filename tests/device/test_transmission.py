@@ -93,7 +93,6 @@ REFUSED = {
     "pair": lambda d: zw.Pair(d.motor_side, d, stiffness=10),
     "robust boundary": lambda d: zw.maps.robust_boundary(d, zw.operators.Finger(), (0, 1), points=3),
     "stability boundary": lambda d: zw.maps.stability_boundary(d),
-    "compare": lambda d: zw.compare(d, WALL),
     "emit": lambda d: zw.emit(d, WALL),
     "emit anyway": lambda d: zw.emit(d, WALL, anyway=True),
     "serve": lambda d: zw.serve(d, WALL, hand=zw.operators.Finger(), duration=0.1),
@@ -217,7 +216,6 @@ def test_options_take_the_place_of_the_file(err):
 @pytest.mark.parametrize(
     "line",
     [
-        "compare it.toml --stiffness 100",
         "emit it.toml --stiffness 100 -o out",
         "serve it.toml --stiffness 100 --operator finger --duration 0.1",
         "plan it.toml --force-noise 0.01 --transmission.handle-mass 1",
