@@ -13,6 +13,7 @@ from described_arms import panda_like, random_arm
 import zwidth as zw
 from zwidth.checker import verify
 from zwidth.cli.main import main
+from zwidth.cli.workspace.arm import read_joints
 from zwidth.model.arms import PlanarChain, built_in, read_arm
 
 PERIOD, PARTS, SAMPLES = 1e-3, 8, 300
@@ -211,3 +212,21 @@ def test_legs_are_read_at_their_motors():
     plain = built_in("haply-2diy", damping=0.003)
     one, other = (zw.workspace(a, zw.Wall(100), rate=1000, points=20) for a in (given, plain))
     assert (one.outcome, one.largest_stiffness) == (other.outcome, other.largest_stiffness)
+
+
+def test_each_joint_has_the_units_of_its_motion(tmp_path):
+    """A joint that slides takes N/m and refuses N·m/rad, one that turns the other way round."""
+    path = random_arm(tmp_path / "arm.urdf", 3, 2, sliding=(1,))
+    turns, slides = zw.Transmission(handle_damping="0.1 N*m*s/rad"), zw.Transmission(stiffness="30 N/mm")
+    assert read_arm(path, transmission=[turns, slides]).transmissions == (turns, slides)
+    for wrong, joint in (([turns, turns], 2), ([slides, slides], 1)):
+        with pytest.raises(
+            zw.InputError, match=f"joint {joint} is .*, and its transmission is given in units"
+        ):
+            read_arm(path, transmission=wrong)
+    file = tmp_path / "joints.toml"
+    file.write_text('[joints.transmission]\nstiffness = ["3 N*m/deg", "30 N/mm"]\n', encoding="utf-8")
+    told = read_joints(file)["transmission"]
+    assert [one.motion for one in told] == ["rotary", "linear"]
+    assert told[1].stiffness == 30000
+    assert read_arm(path, transmission=told).transmissions == told

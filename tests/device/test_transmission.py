@@ -11,7 +11,6 @@ import pytest
 import zwidth as zw
 from zwidth.cli.main import main
 from zwidth.model.specification.write import parsed, written
-from zwidth.show.explorer.state import State
 
 CABLE = zw.Transmission(
     stiffness="12 N/mm", damping=0.5, handle_mass=(0.03, 0.04), handle_damping="0.09 N*s/m", encoder="handle"
@@ -92,11 +91,8 @@ REFUSED = {
     ),
     "simulated device": lambda d: zw.simulation.SimulatedDevice(d, zw.operators.Finger(), 0.1),
     "pair": lambda d: zw.Pair(d.motor_side, d, stiffness=10),
-    "map": lambda d: zw.z_width(d, (0, 100), (0, 1), (3, 3)),
     "robust boundary": lambda d: zw.maps.robust_boundary(d, zw.operators.Finger(), (0, 1), points=3),
     "stability boundary": lambda d: zw.maps.stability_boundary(d),
-    "compare": lambda d: zw.compare(d, WALL),
-    "sweep": lambda d: zw.sweep(d, WALL, vary={"stiffness": [100, 200]}),
     "emit": lambda d: zw.emit(d, WALL),
     "emit anyway": lambda d: zw.emit(d, WALL, anyway=True),
     "serve": lambda d: zw.serve(d, WALL, hand=zw.operators.Finger(), duration=0.1),
@@ -117,11 +113,11 @@ REFUSED = {
     "heavy body": lambda d: zw.coupling.heavy_body_damping(d, 100),
     "picture": lambda d: zw.plots.plane(d, 100),
     "curve": lambda d: zw.plots.worst_case(d, 100),
-    "doctor": lambda d: zw.servo.doctor(d, duration=60, progress=lambda *_: None),
     "tissue": lambda d: zw.tissue.AdaptiveSolid(d, (100, 100, 1)),
-    "diagnose": lambda d: zw.diagnose(zw.samples.path("shaking.csv"), d.replace(motion="rotary")),
+    "diagnose": lambda d: zw.diagnose(
+        zw.samples.path("shaking.csv"), d.replace(motion="rotary", transmission=zw.Transmission(stiffness=1))
+    ),
     "finger": lambda d: zw.identification.identify_finger(PRESSED, d),
-    "explorer": lambda d: State.of(d, WALL),
     "bounding": lambda d: zw.formulas.check_bounding(d, zw.render(WALL, zw.rendering.ForceBounding())),
 }
 
@@ -129,7 +125,7 @@ REFUSED = {
 @pytest.mark.parametrize("asked", REFUSED)
 def test_it_is_never_taken_for_rigid(asked):
     """Whatever does not know a transmission says so, and what to give."""
-    for device in (CERTAIN, CAPSTAN)[: 1 if asked in ("map", "absolute") else 2]:  # those take no interval
+    for device in (CERTAIN, CAPSTAN)[: 1 if asked == "absolute" else 2]:  # that takes no interval
         with pytest.raises(zw.InputError, match=r"counts motor, encoder and hand as one.*\.motor_side"):
             REFUSED[asked](device)
 
@@ -219,13 +215,12 @@ def test_options_take_the_place_of_the_file(err):
 @pytest.mark.parametrize(
     "line",
     [
-        "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1",
-        "sweep it.toml --stiffness 100 --vary 'rate=1000,2000'",
-        "compare it.toml --stiffness 100",
         "emit it.toml --stiffness 100 -o out",
         "serve it.toml --stiffness 100 --operator finger --duration 0.1",
         "plan it.toml --force-noise 0.01 --transmission.handle-mass 1",
-        "doctor it.toml --stiffness 100",
+        "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1 --hands finger",
+        "check it.toml --stiffness 100 --hands finger",
+        "check it.toml --stiffness 100 --active-below 3",
         "play it.toml --stiffness 100 -o out.html",
         "pair it.toml --stiffness 100",
         "links it.toml",
@@ -233,3 +228,33 @@ def test_options_take_the_place_of_the_file(err):
 )
 def test_no_command_takes_it_for_rigid(err, line):
     assert "counts motor, encoder and hand as one" in err(line)
+
+
+LINEAR = {"stiffness": "30 N/mm", "handle_mass": "30 g", "handle_damping": "0.1 N*s/m"}
+ROTARY = {"stiffness": "3 N*m/deg", "handle_mass": "1 g*cm^2", "handle_damping": "0.1 N*m*s/rad"}
+
+
+@pytest.mark.parametrize(("key", "linear", "rotary"), [(k, LINEAR[k], ROTARY[k]) for k in LINEAR])
+def test_units_of_another_motion_are_refused(key, linear, rotary):
+    """By the device, and within one transmission, however it is made; plain numbers are of either."""
+    slides = {"mass": 0.03, "damping": 0.06, "rate": 1000}
+    turns = {"inertia": 1e-5, "damping": 0.06, "rate": 1000}
+    assert zw.Device(**slides, transmission=zw.Transmission(**{key: linear}))
+    assert zw.rotary(**turns, transmission=zw.Transmission(**{key: rotary}))
+    assert zw.rotary(**turns, transmission=zw.Transmission(**{key: 1})).transmission.motion == ""
+    with pytest.raises(zw.InputError, match=r"device is linear, and its transmission .* in N/m and not in"):
+        zw.Device(**slides, transmission=zw.Transmission(**{key: rotary}))
+    with pytest.raises(zw.InputError, match="is rotary, and its transmission"):
+        zw.rotary(**turns, transmission=zw.Transmission(**{key: linear}))
+    with pytest.raises(zw.InputError, match=f"another number is of what slides, {key} of what turns"):
+        zw.Transmission(damping="1 N*s/m").replace(**{key: rotary})
+    with pytest.raises(zw.InputError, match="both are of one motion"):
+        zw.Transmission(**{key: linear}, damping="1 N*m*s/rad")
+
+
+def test_at_its_handle_a_device_that_turns_has_a_transmission_that_slides():
+    there = zw.rotary(
+        inertia=1e-5, damping=1e-3, rate=1000, handle_radius="2 cm", transmission=zw.Transmission(**ROTARY)
+    )
+    assert there.transmission.motion == there.motion == "linear"
+    assert there.transmission.stiffness == pytest.approx(3 * 180 / np.pi / 0.02**2)

@@ -86,3 +86,12 @@ def test_lateness_costs_what_holds_for_every_cable():
     at_handle = DEVICE.replace(transmission=CABLE.replace(encoder="handle"))
     with pytest.raises(zw.InputError, match="proves nothing where the encoder is at the handle"):
         doctor(at_handle, zw.Wall(100), duration=60)
+
+
+def test_of_what_may_be_worse_with_more_it_is_said():
+    """Of the cable's numbers and the motor's damping, and not of the handle's."""
+    for name in ("transmission.stiffness", "transmission.damping", "device.damping"):
+        bracket = limit(125, name)
+        assert bracket.beyond.startswith("a larger one is not always safer: zwidth sweep --vary ")
+        assert bracket.beyond.split("--vary ")[1].startswith(name.removeprefix("device.") + "=")
+    assert not limit(125, "transmission.handle_damping").beyond

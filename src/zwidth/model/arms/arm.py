@@ -95,6 +95,8 @@ class Arm(ABC):
         for key in ("coulomb_friction", "resolution", "torque_limit"):
             object.__setattr__(self, key, _numbers(getattr(self, key), key, m))
         object.__setattr__(self, "transmission", _transmissions(self.transmission, m))
+        for joint, each in enumerate(self.transmissions, start=1):
+            each.require("linear" if self.sliding[joint - 1] else "rotary", f"joint {joint}")
         if any(limit == 0 for limit in self.torque_limit):
             raise InputError("torque_limit must be > 0: a motor without torque renders nothing; leave it out")
 

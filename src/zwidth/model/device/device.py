@@ -174,6 +174,8 @@ class Device(Parametric):
             raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
         if not (transmission is None or isinstance(transmission, Transmission)):
             raise InputError(f"transmission is a zwidth.Transmission, got {type(transmission).__name__}")
+        if transmission is not None:
+            transmission.require(motion, str(name))
         everything = locals()
         given: dict[str, Given | None] = {key: everything[key] for key in parameters_of(Device)}
         given["sample_period"] = _period(sample_period, rate)
@@ -235,7 +237,7 @@ class Device(Parametric):
         if (
             self.transmission is not None and key in _OF_A_BODY
         ):  # whoever asks for one number, and does not say of which, counts one body
-            require_rigid(self, f"a single {in_words(key)}")
+            require_rigid(self, f"what asks for one {in_words(key)}")
         value = getattr(self, key)
         if not isinstance(value, Exact):
             given = "it is unknown" if value is None else f"it is the interval {value}"
@@ -284,8 +286,8 @@ def require_rigid(device: Device, what: str) -> None:
     if device.transmission is not None:
         raise InputError(
             f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
-            "them; zwidth check, limit and simulate know a transmission; here leave [device.transmission] or "
-            "--transmission out, in Python take device.motor_side"
+            "them; zwidth check, limit, map, sweep and simulate know it. To ask of the motor alone leave "
+            "out [device.transmission] and --transmission, in Python take device.motor_side"
         )
 
 

@@ -133,7 +133,7 @@ def at_handle(device: Device, radius: Exact | Interval) -> Device:
         known = device.transmission.parameters().items()
         powers = {key: -1 if key.endswith("friction") else -2 for key, _ in known}
         there = {key: _scaled(value, radius, powers[key]) for key, value in known}
-        changes["transmission"] = device.transmission.replace(**there)
+        changes["transmission"] = device.transmission.replace(**there, motion="linear")
     return device.replace(**changes)
 
 

@@ -11,13 +11,22 @@ m₁, b₁ and f_c1 are those of the device itself, on whose side the actuator i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import pi, sqrt
 from typing import Any, Literal
 
+from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, middle
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.quantity.parameter import Parametric, Uncertain, UncertainOrNone, parameter, parameters_of, word
+from zwidth.quantity.parameter import (
+    Parametric,
+    Uncertain,
+    UncertainOrNone,
+    parameter,
+    parameters_of,
+    read_number,
+    word,
+)
 
 
 def _q(name: str, symbol: str, like: str, meaning: str) -> Quantity:
@@ -50,11 +59,14 @@ class Transmission(Parametric):
         f_c2 ≥ 0 [N; N·m].
     encoder
         "motor" or "handle": which of the two it reads, x₁ or x₂.
+    motion
+        "linear" or "rotary", of the units in texts; a device of the other motion refuses it. "": they do not
+        say.
 
     Raises
     ------
     InputError
-        If a number is not finite, or outside its bound.
+        If a number is not finite, or outside its bound, or two units are of different motions.
     """
 
     stiffness: UncertainOrNone = parameter(
@@ -88,6 +100,22 @@ class Transmission(Parametric):
         why=_FRICTION,
     )
     encoder: Literal["motor", "handle"] = word("motor", "handle")
+    motion: str = field(default="", compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        texts = {name: getattr(self, name) for name in parameters_of(Transmission)}
+        told = motion_told(texts, self.motion)
+        super().__post_init__()
+        object.__setattr__(self, "motion", told)
+
+    def require(self, motion: str, whose: str) -> None:
+        """Refuse units of another motion than that of a device or a joint."""
+        if self.motion not in ("", motion):
+            units = [GLOSSARY["stiffness"].unit_for(each) for each in (motion, self.motion)]
+            raise InputError(
+                f"{whose} is {motion}, and its transmission is given in units of a {self.motion} one: write "
+                f"its stiffness in {units[0]} and not in {units[1]}, and the others likewise"
+            )
 
     @property
     def is_certain(self) -> bool:
@@ -111,3 +139,27 @@ class Transmission(Parametric):
         """The known numbers by name, SI."""
         known = {name: getattr(self, name) for name in parameters_of(Transmission)}
         return {name: value for name, value in known.items() if isinstance(value, (Exact, Interval))}
+
+
+def motion_told(given: Mapping[str, Any], known: str = "") -> str:
+    """Whether the units in some texts slide or turn, "linear" or "rotary"; "" where they are of either."""
+    found = {known: "another number"} if known else {}
+    for name, value in given.items():
+        own = parameters_of(Transmission)[name]
+        fits = [m for m in ("linear", "rotary") if own.is_number and _reads(value, own.quantity, m)]
+        if len(fits) == 1:
+            found[fits[0]] = name
+    if len(found) == 2:
+        raise InputError(
+            f"transmission: {found['linear']} is of what slides, {found['rotary']} of what turns: both "
+            "are of one motion"
+        )
+    return next(iter(found), "")
+
+
+def _reads(value: Any, quantity: Quantity, motion: str) -> bool:
+    try:
+        read_number(value, quantity, quantity.name, uncertain=True, motion=motion)
+    except InputError:
+        return False
+    return True

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.model.device.transmission import Transmission
+from zwidth.model.device.transmission import Transmission, motion_told
 from zwidth.model.environment import BackwardDifference, OnePole, VelocityFilter, Window
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.model.specification.table import Table, located, quoted, suggestion
@@ -185,7 +185,7 @@ BETWEEN = "transmission."
 
 
 def transmission_of(between: Table, motion: str) -> Transmission:
-    """What a table of a transmission describes, "linear" or "rotary"."""
+    """What a table of a transmission describes, "linear", "rotary", or "" where its units say which."""
     known = parameters_of(Transmission)
     between.check_keys(known, "a transmission")
     read: dict[str, Any] = {}
@@ -199,7 +199,7 @@ def transmission_of(between: Table, motion: str) -> Transmission:
                     value, kind.quantity, name, uncertain=True, bound=kind.bound, why=kind.why, motion=motion
                 )
             )
-    return Transmission(**read)
+    return Transmission(**read, motion=motion or motion_told(between.values))
 
 
 def joint_transmissions(given: object, label: str, joints: int | None = None) -> tuple[Transmission, ...]:
@@ -214,4 +214,4 @@ def joint_transmissions(given: object, label: str, joints: int | None = None) ->
         {key: values[n] if isinstance(values, list) else values for key, values in given.items()}
         for n in range(counts.pop())
     ]
-    return tuple(transmission_of(Table(label, row), "rotary") for row in rows)
+    return tuple(transmission_of(Table(label, row), "") for row in rows)

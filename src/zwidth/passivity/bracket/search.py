@@ -112,7 +112,7 @@ class Search:
             return None
         least = self.parameter.least
         every = least is not None and self.parameter.proves_more(verdict(least))
-        if every or (least == 0 and proved(least, inf)):
+        if every or (least == 0 and proved(least, inf) and proved(self.first, inf)):
             passive, active = least, None
         else:
             sides = self.sides(proved, refuted)
@@ -130,8 +130,9 @@ class Search:
 
     def beyond(self, found: Found) -> str:
         """Why no value further on was decided, or what to ask besides."""
-        name = self.parameter.name
-        if found.passive and not found.every and name in ("transmission.stiffness", "transmission.damping"):
+        name = self.parameter.name.removeprefix("device.")
+        turns = self.parameter.least is not None and name != "transmission.handle_damping"
+        if turns and found.passive is not None and not found.every:
             return f"a larger one is not always safer: zwidth sweep --vary {name}=LOW:HIGH:COUNT asks at many"
         if found.every or None not in (found.passive, found.active):
             return ""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from math import ceil, isfinite
 from typing import NamedTuple
 
@@ -31,6 +32,9 @@ from zwidth.study.bench.motions import USUAL, as_speed, fixed_motions, speed_of
 
 ROUNDS = 150
 """Rounds of each motion at first; more where it gains but has not yet earned what its beginning cost."""
+
+FEW = 25
+"""The same where the simulator moves two bodies."""
 
 ROUNDING = 1e-9
 """Part of what friction took that counts as nothing: sums of so many samples are no better."""
@@ -126,7 +130,7 @@ def attack(
     Parameters
     ----------
     device
-        Every number certain; its mass plays no part.
+        Every number certain; its mass plays no part. With a transmission the simulator moves its handle.
     environment
         Any that can be simulated, laws in a chain included.
     fastest
@@ -140,10 +144,11 @@ def attack(
     InputError
         If the speed is too low for any motion, or infinite.
     """
-    limit, period = as_speed(device, fastest), float(device.exact("sample_period"))
+    motor = device.motor_side
+    limit, period = as_speed(motor, fastest), float(motor.exact("sample_period"))
     law = as_environment(environment)
-    motions = {**fixed_motions(device, limit, law), **(known or {})}
-    play = _player(device, law)
+    motions = {**fixed_motions(motor, limit, law), **(known or {})}
+    play = _player(device, law) if device is motor else partial(_taken, device, law)
     speeds = {name: speed_of(positions, period) for name, positions in motions.items()}
     tried: dict[str, _Played] = {}
     for reach in (float(USUAL * limit), float(limit)):
@@ -178,7 +183,7 @@ def _replayed(
 
 def _played(play: Play, positions: Floats) -> _Played:
     """All rounds of a motion; more of them where it gains and has not yet earned its beginning."""
-    played = play(positions, ROUNDS)
+    played = play(positions, FEW if isinstance(play, partial) else ROUNDS)
     if played.gain > 0 >= played.total:
         rounds = ROUNDS + ceil(-1.5 * played.total / played.gain)
         if rounds * len(positions) <= LONGEST:
@@ -214,7 +219,7 @@ def _player(device: Device, law: Environment) -> Play:
 def _taken(device: Device, environment: Environment, positions: Floats, rounds: int) -> _Played:
     """The same by the simulator."""
     path = _listed(positions, rounds)
-    period = device.exact("sample_period")
+    period = device.motor_side.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)
     taken = trace["kinetic_energy"].values - trace["hand_work"].values  # what moves at the end is not lost
     half = max((len(taken) - 1) // len(positions) // 2, 1)  # a motion that diverges ends early

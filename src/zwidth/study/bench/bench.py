@@ -171,13 +171,14 @@ def compare(
         return there.about_axis(device, wall, radius)
     if handle_radius is not None:
         raise InputError("handle_radius is of a device that turns, and this one is linear: leave it out")
+    motor = device.motor_side
     if device.mass is None:
         raise InputError("the touches are simulated and need the device's mass [kg]")
     chosen = standard_laws(device, wall) if laws is None else dict(laws)
     if not chosen:
         raise InputError("laws is empty: there is nothing to compare")
-    touches = standard_touches(device, float(wall.stiffness))  # type: ignore[arg-type]
-    known = found_motions(device, wall, fastest)
+    touches = standard_touches(motor, float(wall.stiffness))  # type: ignore[arg-type]
+    known = found_motions(motor, wall, fastest)
     traces: dict[str, dict[str, xr.Dataset]] = {}
     attacks: dict[str, Attack] = {}
     known_of: dict[str, Standing] = {}
@@ -188,7 +189,7 @@ def compare(
         traces[name] = {key: _touched(device, law, touch) for key, touch in touches.items()}
         attacks[name] = attack(device, law, fastest=fastest, known=known)
         known_of[name] = standing(device, law, attacks[name])
-        times[name] = _step_time(device, law, touches["press"])
+        times[name] = _step_time(motor, law, touches["press"])
     if progress is not None:
         progress(len(chosen), len(chosen))
     return LawComparison(
@@ -343,6 +344,8 @@ def wall_to_render(environment: Environment) -> Wall:
 def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
     """Every law of the bench for a wall on a device; without those that need a number it does not have.
 
+    With a transmission these are the laws that are computed from one mass, or one damping, of their own.
+
     Parameters
     ----------
     device
@@ -355,10 +358,10 @@ def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
     InputError
         If it is no wall, or a number is an interval.
     """
-    met = wall_to_render(wall)
-    if not met.is_certain or any(not isinstance(v, Exact) for v in (device.damping, device.sample_period)):
+    motor, met = device.motor_side, wall_to_render(wall)
+    if not met.is_certain or any(not isinstance(v, Exact) for v in (motor.damping, motor.sample_period)):
         raise InputError("the bench simulates one loop: give numbers, no intervals")
-    made = {name: law(device, met) for name, law in LAWS.items()}
+    made = {name: law(motor, met) for name, law in LAWS.items()}
     return {name: law for name, law in made.items() if _suits(law, device)}
 
 

@@ -13,7 +13,7 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.wall import Wall
 from zwidth.model.operator import Dowel, MaliciousTouch, PrescribedMotion, TypicalTouch
 from zwidth.model.operator.operator import Operator
-from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.check import check
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
@@ -170,7 +170,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     `wall`: what was to be rendered, of one stiffness; its damping is left out.
     """
     wanted = float(wall.stiffness)  # type: ignore[arg-type]
-    alone = check_by_closed_forms(device, Wall(wall.stiffness))
+    alone: Any = check(device, Wall(wall.stiffness), iterate=False)
     limit, unit = alone.max_stiffness, device.unit("stiffness")
     words = [
         f"Alone, a wall of {told(wanted, unit)} is passive on this device and needs no law."

@@ -12,7 +12,7 @@ limit as the device states them.  So a proof for an ideal actuator is not enough
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -25,7 +25,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, half_a_step
 from zwidth.passivity.bounding import check_bounding, is_bounded
-from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.storage import available_storage
@@ -33,6 +33,7 @@ from zwidth.passivity.storage.chain_program import COUNTS, ChainProgram, chain_p
 from zwidth.passivity.storage.chain_table import DoesNotClose
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of
+from zwidth.passivity.transmission import as_one_body
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands
@@ -84,6 +85,8 @@ def standing(device: Device, law: Environment, found: Attack) -> Standing:
     """What is known of a law; `found` is the best motion of the adversary."""
     if found.extracts:
         return Standing(status="active", reason=str(found), scope=_scope(device, law))
+    if device.transmission is not None:
+        return _behind(device, law)
     withheld: list[str] = []
     for road in (_by_check, _by_a_covering_wall, _by_bounding, _by_a_theorem):
         outcome = road(device, law)
@@ -96,9 +99,25 @@ def standing(device: Device, law: Environment, found: Attack) -> Standing:
     return Standing(status=status, reason=reason, scope=_scope(device, law), withheld=kept_back)
 
 
+def _behind(device: Device, law: Environment) -> Standing:
+    """What the motor feels pays for whatever stands behind it; else what the verdict on this device says."""
+    felt = as_one_body(device)
+    for road in (_by_check, _by_a_covering_wall, _by_bounding, _by_a_theorem):
+        outcome = road(felt, law)
+        if isinstance(outcome, Standing) and outcome.status != "active":
+            return replace(outcome, scope=outcome.scope.replace(transmission="any"))
+    verdict = check(device, law, iterate=False)
+    ideal = device.force_limit is device.force_resolution is None
+    status: Status = "active" if ideal and verdict.outcome == "active" else "undecided"
+    return Standing(status=status, reason=verdict.claim, scope=_scope(device, law))
+
+
 def _scope(device: Device, law: Environment) -> Scope:
     """Contact made and broken, with all that the device states of its actuator."""
-    return scope_of(device, law).replace(
+    scope = scope_of(device.motor_side, law)
+    if device.transmission is not None:
+        scope = scope.replace(transmission="as given")
+    return scope.replace(
         force_limit=device.force_limit is not None, force_steps=device.force_resolution is not None
     )
 
