@@ -155,3 +155,42 @@ def test_a_hand_takes_energy_that_the_motor_swings_out_on_its_cable(tmp_path):
 def test_what_is_not_known_is_refused(unknown):
     with pytest.raises(zw.InputError, match=rf"transmission\.{next(iter(unknown))} is "):
         touch(MOTOR.replace(transmission=CABLE.replace(**unknown)), 1, Held(), 1)
+
+
+@dataclass(frozen=True)
+class Led(Operator):
+    """A hand that leads the handle to and fro."""
+
+    @property
+    def kinematic(self):
+        return True
+
+    def signals(self, times):
+        return Signals(position=2e-3 * (1 + np.sin(2 * np.pi * 3 * times)))
+
+    def describe(self, motion="linear"):
+        return "a path"
+
+
+@pytest.mark.parametrize("delay", [0, 4e-4])
+@pytest.mark.parametrize("dry", [0, 0.02])
+@pytest.mark.parametrize(
+    "hand", [Held(), Held(hand=LinearHand(0.1, 400.0, 0.0), swing=0.0), Led()], ids=["held", "still", "led"]
+)
+def test_a_stretch_that_comes_again_is_what_the_series_make_of_it(hand, dry, delay):
+    """With a second instant in each sample the series are all there is: the motion is the same."""
+    rough = CABLE.replace(handle_coulomb_friction=dry)
+    device = MOTOR.replace(coulomb_friction=dry, resolution=1e-5, delay=delay, transmission=rough)
+    how = {} if hand.kinematic else {"initial_velocity": 0.1}
+    once, again = (zw.simulate(device, zw.Wall(100), hand, 0.5, points_per_sample=n, **how) for n in (1, 2))
+    names = "position motor_position velocity motor_velocity hand_work viscous_loss transmission_loss"
+    agree(once, names, [again[name].values[::2] for name in names.split()], 1e-11)
+
+
+@pytest.mark.parametrize("drag", [0.0, 1e-3, 0.3, 3e2])
+def test_every_joule_is_there_however_little_or_much_is_damped(drag):
+    """Long runs: a table repeats its rounding, and is used only where damping takes that away."""
+    rough = CABLE.replace(damping=drag, handle_damping=drag, handle_coulomb_friction=1e-4)
+    device = MOTOR.replace(damping=drag, transmission=rough)
+    trace = touch(device, 0.1, Held(hand=LinearHand(0.1, 300.0, 0.0)), 20, initial_velocity=0.2)
+    agree(trace, "time", [trace.time.values], 1e-13)

@@ -12,7 +12,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
-from zwidth.loop import two_masses
+from zwidth.loop import two_bodies, two_masses, two_strides
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, WORK, Plant
 from zwidth.loop.start import rest_position
@@ -53,7 +53,7 @@ class Setup:
     state: Array
     frame: Frame
     plain: bool
-    two: Array | None = None  # of `two_masses`, with a transmission
+    two: Array | None = None  # of `two_bodies`, with a transmission
 
     @property
     def plant_numbers(self) -> Array:
@@ -87,7 +87,7 @@ def prepare(
     )  # fmt: skip
     start = laid.starts(initial_position, initial_velocity, encoder_phase)
     states, numbers, memories = started([laid], np.array([start]))
-    two = two_masses.numbers_of(device, laid.operator, laid.frame.plant, MOST_PIECES) if flexible else None
+    two = two_bodies.numbers_of(device, laid.operator, laid.frame.plant, MOST_PIECES) if flexible else None
     return Setup(
         device=device,
         environment=law,
@@ -96,7 +96,7 @@ def prepare(
         encoder_phase=start[2],
         law=numbers[0],
         memory=memories[0],
-        state=states[0] if two is None else two_masses.state_of(states[0]),
+        state=states[0] if two is None else two_bodies.state_of(states[0]),
         frame=laid.frame,
         plain=laid.plain,
         two=two,
@@ -448,5 +448,5 @@ def _number(value: object, what: str) -> float:
 
 def empty_record(frame: Frame, two: bool = False) -> tuple[Array, Array, Array]:
     """(commands, record, work) to run into, those of two masses with all that they need."""
-    rows, work = (two_masses.RECORDED_OF_TWO, two_masses.WORK_OF_TWO) if two else (RECORDED, WORK)
+    rows, work = (two_masses.RECORDED_OF_TWO, two_strides.WORK_OF_TWO) if two else (RECORDED, WORK)
     return np.zeros(frame.samples + 1), np.empty((rows, frame.columns)), np.zeros(work)

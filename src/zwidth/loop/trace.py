@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from zwidth.loop import kernel, two_masses
+from zwidth.loop import kernel, two_bodies, two_masses
 from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Frame, Setup
 from zwidth.loop.start import OF_TWO, Start, held_at_start
@@ -230,7 +230,7 @@ def values_of(frame: Frame, record: Array, columns: int) -> dict[str, Array]:
 def _values_of_two(setup: Setup, record: Array, columns: int) -> dict[str, Array]:
     """The variables of motor and handle: those of a mass that the transmission pushes, and the motor's."""
     assert setup.two is not None
-    two, own = two_masses.packed_two(setup.two), record[:, :columns].copy()
+    two, own = two_bodies.packed_two(setup.two), record[:, :columns].copy()
     x1, v1 = own[two_masses.R_MOTOR], own[two_masses.R_MOTOR_VELOCITY]
     twist, apart = x1 - own[kernel.R_POSITION], v1 - own[kernel.R_VELOCITY]
     inside = two.spring * twist + two.damper * apart

@@ -10,13 +10,7 @@ series of its velocity passes 0.  A handle whose motion is prescribed is a body 
 
 from __future__ import annotations
 
-from math import ceil, sqrt
-from typing import Any, NamedTuple
-
-import numpy as np
-
-from zwidth.errors import InputError
-from zwidth.loop.kernel import RECORDED, packed_plant
+from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import (
     COULOMB,
     DIRECTION,
@@ -24,7 +18,6 @@ from zwidth.loop.plant import (
     FORCE,
     GOAL,
     POSITION,
-    STATE_SIZE,
     STOPS,
     TERMS,
     VELOCITY,
@@ -37,104 +30,46 @@ from zwidth.loop.plant import (
     value,
 )
 from zwidth.loop.step import ROUNDING, book, slewing
-from zwidth.model.device.device import Device
-from zwidth.model.operator.operator import Operator
+from zwidth.loop.two_bodies import (
+    APART,
+    FADING,
+    INSIDE_LOSS,
+    MOTOR,
+    MOTOR_COULOMB,
+    MOTOR_DIRECTION,
+    MOTOR_VELOCITY,
+    MOTOR_VISCOUS,
+    ON_1,
+    ON_2,
+    ROOM,
+    V1,
+    V2,
+    X1,
+    X2,
+    Start,
+    TwoMasses,
+    expand_two,
+    packed_two,
+    pieces_of_two,
+)
+from zwidth.loop.two_strides import Course, at_once
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.elementary import exp
-from zwidth.quantity.exact import Interval
-
-
-class TwoMasses(NamedTuple):
-    """What does not change: the motor and its amplifier; the handle and the hand on it; what is between.
-
-    `sensed` is 1 where the encoder reads the handle, `driven` where the motion of the handle is prescribed.
-    """
-
-    motor: Plant
-    handle: Plant
-    spring: float
-    damper: float
-    sensed: float
-    driven: float
-
-
-# The state is that of `plant`, its position, velocity and direction those of the handle, its losses those of
-# both sides; behind it the motor's.
-MOTOR, MOTOR_VELOCITY, MOTOR_DIRECTION, MOTOR_VISCOUS, MOTOR_COULOMB, INSIDE_LOSS = range(
-    STATE_SIZE, STATE_SIZE + 6
-)
-STATE_OF_TWO = STATE_SIZE + 6
 
 R_MOTOR, R_MOTOR_VELOCITY, R_MOTOR_VISCOUS, R_MOTOR_COULOMB, R_INSIDE_LOSS = range(RECORDED, RECORDED + 5)
 RECORDED_OF_TWO = RECORDED + 5
 
-# Where the series stand: velocity and way of the handle, what fades of the actuator force, velocity and way
-# of the motor, the difference of the velocities, the forces on either at rest, and room for one more.
-_V2, _X2, _FADING, _V1, _X1, _APART, _ON_1, _ON_2, _ROOM = (TERMS * i for i in range(9))
-WORK_OF_TWO = 9 * TERMS
-
-_NUMBERS = (
-    "mass",
-    *(f"transmission.{key}" for key in ("stiffness", "damping", "handle_mass", "handle_damping")),
-    "transmission.handle_coulomb_friction",
-)
-
 _MOST_EVENTS = 100_000
-
-
-def numbers_of(device: Device, operator: Operator, motor: Plant, most: int) -> Array | None:
-    """Of the bodies of a device, in at most so many pieces a period; None of one without a transmission.
-
-    Raises
-    ------
-    InputError
-        If a number is unknown or an interval, or they move too fast.
-    """
-    between, hand, period = device.transmission, operator.hand, float(device.exact("sample_period"))
-    if between is None:
-        return None
-    given: dict[str, Any] = {f"transmission.{key}": value for key, value in between.parameters().items()}
-    given |= device.parameters()
-    for key in _NUMBERS:
-        if key not in given:
-            raise InputError(f"{key} is unknown, and two masses are simulated: give it, or device.motor_side")
-        if isinstance(given[key], Interval):
-            raise InputError(f"{key} is the interval {given[key]}; a simulated motion needs one value of it")
-    own, spring, damper, mass, drag, dry = (float(given[key]) for key in _NUMBERS)
-    two = TwoMasses(
-        motor._replace(mass=own, hand_mass=0.0, stiffness=0.0, hand_damping=0.0),
-        Plant(mass, hand.mass, drag, dry, dry, hand.stiffness, hand.damping, motor.lag, motor.slew),
-        spring,
-        damper,
-        float(between.encoder == "handle"),
-        float(operator.kinematic),
-    )
-    if pieces_of_two(two, period) > most:
-        raise InputError(
-            f"motor, handle and transmission move over {most} times faster than the sample period {period:g} "
-            "s: on this scale they are rigid; give the device without its transmission"
-        )
-    return np.array([*two.motor, *two.handle, *two[2:]])
-
-
-def state_of(one: Array) -> Array:
-    """The state of two masses that start together, as the one mass does."""
-    behind = np.zeros(STATE_OF_TWO - STATE_SIZE)
-    behind[:3] = one[[POSITION, VELOCITY, DIRECTION]]
-    return np.concatenate([one, behind])
-
-
-@compiled
-def packed_two(p: Array) -> TwoMasses:
-    """The bodies from the numbers of their array."""
-    return TwoMasses(packed_plant(p[:9]), packed_plant(p[9:18]), p[18], p[19], p[20], p[21])
 
 
 @compiled
 def advance_two(
-    state: Array, two: TwoMasses, force: float, anchor: float, speed: float, h: float, work: Array
+    state: Array, two: TwoMasses, force: float, anchor: float, speed: float, h: float, place: int, work: Array
 ) -> None:
-    """Move both bodies by h seconds; arguments as of `step.advance`, work is WORK_OF_TWO long."""
+    """Move both bodies by h seconds; arguments as of `step.advance`, work is WORK_OF_TWO long.
+
+    `place` is 0 or 1, the first or second stretch of a sample, where h is the same in each; else −1.
+    """
     elapsed, lag = 0.0, two.motor.lag
     for _ in range(_MOST_EVENTS):
         left = h - elapsed
@@ -144,30 +79,15 @@ def advance_two(
         ending = reach <= left
         if ending:
             left = reach
-        used = _stretch(state, two, force, anchor + speed * elapsed, speed, ramp, left, work)
+        if ending or elapsed > 0.0:
+            place = -1
+        used = _stretch(state, two, force, anchor + speed * elapsed, speed, ramp, left, place, work)
         if lag > 0.0:
             state[FORCE] = state[GOAL] + (state[FORCE] - state[GOAL]) * exp(-used / lag)
         elif ramp != 0.0:
             state[FORCE] = state[GOAL] if ending and used == left else state[FORCE] + ramp * used
         elapsed = h if used == left and not ending else elapsed + used
     state[FAULT] = 1.0
-
-
-@compiled
-def pieces_of_two(two: TwoMasses, h: float) -> float:
-    """Into how many parts a stretch of h seconds is cut: q ≤ 1.43, which TERMS coefficients bear.
-
-    The traces of stiffness and damping over the masses are no less than the largest rates.
-    """
-    first, hand = two.motor, two.handle
-    light = 0.0 if two.driven > 0.0 else 1.0 / (hand.mass + hand.hand_mass)
-    stiff = two.spring / first.mass + (two.spring + hand.stiffness) * light
-    drag = (first.damping + two.damper) / first.mass
-    drag += (hand.damping + hand.hand_damping + two.damper) * light
-    q = max(sqrt(stiff), drag) * h
-    if first.lag > 0.0:
-        q = max(q, h / first.lag)
-    return max(1.0, ceil(0.7 * q))
 
 
 @compiled
@@ -199,6 +119,7 @@ def _stretch(
     speed: float,
     ramp: float,
     h: float,
+    place: int,
     work: Array,
 ) -> float:
     """Move by at most h seconds, up to the first stop or start of either body; returns the time used."""
@@ -216,40 +137,22 @@ def _stretch(
     if two.driven == 0.0:
         side_2 = _side_of(side_2, on_2, handle.stiction, size)
     net_1, net_2 = _net(on_1, side_1, v1, motor), _net(on_2, side_2, v2, handle)
-    length = h / pieces_of_two(two, h)
-    free_2 = two.driven == 0.0 and side_2 != 0.0
-    terms = _expand(two, v1, v2, net_1, net_2, side_1 != 0.0, free_2, speed, ramp, transient, length, work)
+    start = Start(v1, v2, side_1, side_2, net_1, net_2, speed)
+    steady = place >= 0 and motor.lag == 0.0 and ramp == 0.0
+    course = at_once(two, start, state[FORCE], h, place if steady else -1, work)
+    if course.t == 0.0:
+        course = _by_series(state, two, start, ramp, transient, h, work)
 
-    turn_1 = _event(work, _V1, _ON_1, terms, side_1, motor.stiction)
-    turn_2 = 2.0 if two.driven > 0.0 else _event(work, _V2, _ON_2, terms, side_2, handle.stiction)
-    u = min(turn_1, turn_2, 1.0)
-    t = length if u == 1.0 else u * length
-    to_1, after_1 = _after(work, _V1, _ON_1, terms, u, turn_1, side_1, motor.stiction)
-    to_2, after_2 = v2, side_2
-    if two.driven == 0.0:
-        to_2, after_2 = _after(work, _V2, _ON_2, terms, u, turn_2, side_2, handle.stiction)
+    t, to_1, after_1, to_2, after_2, moved_1, moved_2, way_1, way_2, taken, fast_1, fast_2, apart = course
     state[STOPS] += abs(side_1) * (1.0 - abs(after_1)) + abs(side_2) * (1.0 - abs(after_2))
-    moved_1, moved_2 = value(work, _X1, terms, u), value(work, _X2, terms, u)
-
-    way_1 = length * integral(work, _X1, terms, u) if ramp != 0.0 or two.driven > 0.0 else 0.0
-    way_2 = length * integral(work, _X2, terms, u) if handle.stiffness > 0.0 or two.driven > 0.0 else 0.0
-    if motor.lag > 0.0:
-        taken = state[GOAL] * moved_1 + length * product_integral(work, _V1, _FADING, terms, u)
-    else:
-        taken = state[FORCE] * moved_1 + ramp * (t * moved_1 - way_1)
-    viscous, dry, squares = 0.0, motor.coulomb * abs(moved_1), 0.0
-    if motor.damping > 0.0 and side_1 != 0.0:
-        viscous = motor.damping * length * product_integral(work, _V1, _V1, terms, u)
-    if handle.damping + handle.hand_damping > 0.0 and side_2 != 0.0:
-        squares = length * product_integral(work, _V2, _V2, terms, u)
-    if two.damper > 0.0:
-        state[INSIDE_LOSS] += two.damper * length * product_integral(work, _APART, _APART, terms, u)
+    viscous, dry = motor.damping * fast_1, motor.coulomb * abs(moved_1)
+    state[INSIDE_LOSS] += two.damper * apart
     push = force
     if two.driven > 0.0 and t > 0.0:  # what the hand gives, on the mean
         inside = two.spring * (twist * t + way_1 - way_2) + two.damper * (moved_1 - moved_2)
         push = handle.damping * v2 + handle.coulomb * side_2 - inside / t
     drive = Drive(push, slack, speed, 0.0, 0.0, ramp, transient)
-    book(state, handle, drive, t, moved_2, way_2, squares, taken, v2, to_2)
+    book(state, handle, drive, t, moved_2, way_2, fast_2, taken, v2, to_2)
     state[MOTOR_VISCOUS] += viscous
     state[VISCOUS] += viscous
     state[MOTOR_COULOMB] += dry
@@ -263,53 +166,39 @@ def _stretch(
 
 
 @compiled
-def _expand(
-    two: TwoMasses,
-    v1: float,
-    v2: float,
-    net_1: float,
-    net_2: float,
-    free_1: bool,
-    free_2: bool,
-    speed: float,
-    ramp: float,
-    transient: float,
-    h: float,
-    work: Array,
-) -> int:
-    """Fill in all the series in u = t/h; returns how many coefficients of each."""
-    motor, handle, spring, damper = two.motor, two.handle, two.spring, two.damper
-    scale_1, scale_2 = h / motor.mass, h / (handle.mass + handle.hand_mass)
-    drag_1, drag_2 = motor.damping + damper, handle.damping + handle.hand_damping + damper
-    work[_V1], work[_V2], work[_APART] = v1, v2, v1 - v2
-    work[_X1], work[_X2], work[_FADING] = 0.0, 0.0, transient
-    work[_ON_1], work[_ON_2] = net_1, net_2
-    size, small = max(abs(v1), abs(v2)) * h, 0
-    for n in range(TERMS - 1):
-        over = 1.0 / (n + 1.0)
-        a, b = work[_V1 + n], work[_V2 + n]
-        work[_V1 + n + 1] = scale_1 * (work[_ON_1 + n] - drag_1 * a) * over if free_1 else 0.0
-        work[_V2 + n + 1] = scale_2 * (work[_ON_2 + n] - drag_2 * b) * over if free_2 else 0.0
-        work[_X1 + n + 1], work[_X2 + n + 1] = h * a * over, h * b * over
-        work[_FADING + n + 1] = -h * work[_FADING + n] * over / motor.lag if motor.lag > 0.0 else 0.0
-        given_1, given_2 = -work[_FADING + n + 1], 0.0
-        if n == 0:
-            given_1, given_2 = given_1 - ramp * h, handle.stiffness * speed * h
-        inner = spring * (work[_X1 + n + 1] - work[_X2 + n + 1])
-        work[_APART + n + 1] = work[_V1 + n + 1] - work[_V2 + n + 1]
-        work[_ON_1 + n + 1] = given_1 - inner + damper * work[_V2 + n + 1]
-        work[_ON_2 + n + 1] = (
-            given_2 + inner + damper * work[_V1 + n + 1] - handle.stiffness * work[_X2 + n + 1]
-        )
-        term = max(abs(work[_V1 + n + 1]), abs(work[_V2 + n + 1])) * h
-        term = max(term, max(abs(work[_X1 + n + 1]), abs(work[_X2 + n + 1])))
-        if transient != 0.0:
-            term = max(term, scale_1 * h * abs(work[_FADING + n + 1]))
-        size = max(size, term)
-        small = small + 1 if term <= 1e-19 * size else 0
-        if small >= 3:
-            return n + 2
-    return TERMS
+def _by_series(
+    state: Array, two: TwoMasses, start: Start, ramp: float, transient: float, h: float, work: Array
+) -> Course:
+    """Up to the first stop or start of either body, or a piece of the stretch."""
+    motor, handle, side_1, side_2 = two.motor, two.handle, start.side_1, start.side_2
+    length = h / pieces_of_two(two, h)
+    terms = expand_two(two, start, ramp, transient, length, work)
+    turn_1 = _event(work, V1, ON_1, terms, side_1, motor.stiction)
+    turn_2 = 2.0 if two.driven > 0.0 else _event(work, V2, ON_2, terms, side_2, handle.stiction)
+    u = min(turn_1, turn_2, 1.0)
+    t = length if u == 1.0 else u * length
+    to_1, after_1 = _after(work, V1, ON_1, terms, u, turn_1, side_1, motor.stiction)
+    to_2, after_2 = start.v2, side_2
+    if two.driven == 0.0:
+        to_2, after_2 = _after(work, V2, ON_2, terms, u, turn_2, side_2, handle.stiction)
+    moved_1, moved_2 = value(work, X1, terms, u), value(work, X2, terms, u)
+
+    way_1 = length * integral(work, X1, terms, u) if ramp != 0.0 or two.driven > 0.0 else 0.0
+    way_2 = length * integral(work, X2, terms, u) if handle.stiffness > 0.0 or two.driven > 0.0 else 0.0
+    if motor.lag > 0.0:
+        taken = state[GOAL] * moved_1 + length * product_integral(work, V1, FADING, terms, u)
+    else:
+        taken = state[FORCE] * moved_1 + ramp * (t * moved_1 - way_1)
+    fast_1 = fast_2 = apart = 0.0
+    if motor.damping > 0.0 and side_1 != 0.0:
+        fast_1 = length * product_integral(work, V1, V1, terms, u)
+    if handle.damping + handle.hand_damping > 0.0 and side_2 != 0.0:
+        fast_2 = length * product_integral(work, V2, V2, terms, u)
+    if two.damper > 0.0:
+        apart = length * product_integral(work, APART, APART, terms, u)
+    return Course(
+        t, to_1, after_1, to_2, after_2, moved_1, moved_2, way_1, way_2, taken, fast_1, fast_2, apart
+    )
 
 
 @compiled
@@ -325,10 +214,10 @@ def _event(work: Array, own: int, on: int, terms: int, side: float, stiction: fl
 @compiled
 def _passing(work: Array, on: int, terms: int, side: float, stiction: float) -> float:
     """When the force on a body that sticks passes what holds it, on one side."""
-    work[_ROOM] = max(stiction, abs(work[on])) - side * work[on]
+    work[ROOM] = max(stiction, abs(work[on])) - side * work[on]
     for n in range(1, terms):
-        work[_ROOM + n] = -side * work[on + n]
-    return first_zero(work, _ROOM, terms, 1.0)
+        work[ROOM + n] = -side * work[on + n]
+    return first_zero(work, ROOM, terms, 1.0)
 
 
 @compiled

@@ -15,20 +15,22 @@ from zwidth.loop.kernel import (
     sample,
 )
 from zwidth.loop.plant import DIRECTION, HAND_WORK, POSITION, SOURCE_WORK, VELOCITY
-from zwidth.loop.two_masses import (
+from zwidth.loop.two_bodies import (
     INSIDE_LOSS,
     MOTOR,
     MOTOR_COULOMB,
     MOTOR_VELOCITY,
     MOTOR_VISCOUS,
+    TwoMasses,
+    packed_two,
+)
+from zwidth.loop.two_masses import (
     R_INSIDE_LOSS,
     R_MOTOR,
     R_MOTOR_COULOMB,
     R_MOTOR_VELOCITY,
     R_MOTOR_VISCOUS,
-    TwoMasses,
     advance_two,
-    packed_two,
 )
 from zwidth.native.compiled import Array, compiled
 
@@ -59,6 +61,7 @@ def run_two(
     two = packed_two(numbers)
     samples = commands.shape[0] - 1
     due = first_due(first, late, arrivals)
+    regular = points == 1 and lengths.shape[0] == 1 and arrivals.shape[1] == 0
     for k in range(first, last):
         final = k == samples
         h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
@@ -75,7 +78,7 @@ def run_two(
                 return
             end = h if point == points - 1 else h * (point + 1) / points
             due = travel_two(
-                state, two, hand, now, end, h, due, k, late, offset, arrivals, commands, work
+                state, two, hand, now, end, h, regular, due, k, late, offset, arrivals, commands, work
             )  # fmt: skip
             now = end
 
@@ -88,6 +91,7 @@ def travel_two(
     start: float,
     end: float,
     h: float,
+    regular: bool,
     due: int,
     k: int,
     late: int,
@@ -96,17 +100,18 @@ def travel_two(
     commands: Array,
     work: Array,
 ) -> int:
-    """As `kernel.travel`, of both bodies."""
+    """As `kernel.travel`, of both bodies; a `regular` sample has the stretches of every other, two at most."""
     now = start
     while now < end:
         until = min(arrival(due, k, late, offset, arrivals), end)
+        stretch = (0 if now == 0.0 else 1) if regular else -1
         if hand.kinematic:
             if hand.bent and now < offset:
                 until = min(until, offset)
-            _carry(state, two, on_the_way(hand, offset, until, h), until - now, work)
+            _carry(state, two, on_the_way(hand, offset, until, h), until - now, stretch, work)
         else:
             here = hand.anchor + hand.speed * now
-            advance_two(state, two, hand.push, here, hand.speed, until - now, work)
+            advance_two(state, two, hand.push, here, hand.speed, until - now, stretch, work)
         now = until
         if now < end:
             due = apply_due(state, two.motor, due, k, now, late, offset, arrivals, commands)
@@ -114,7 +119,7 @@ def travel_two(
 
 
 @compiled
-def _carry(state: Array, two: TwoMasses, target: float, h: float, work: Array) -> None:
+def _carry(state: Array, two: TwoMasses, target: float, h: float, place: int, work: Array) -> None:
     """The handle goes to `target` in h seconds at constant velocity, after an impulse of the hand on it."""
     v0, v1 = state[VELOCITY], (target - state[POSITION]) / h
     impulse = 0.5 * two.handle.mass * (v1 - v0) * (v1 + v0)
@@ -122,7 +127,7 @@ def _carry(state: Array, two: TwoMasses, target: float, h: float, work: Array) -
     state[SOURCE_WORK] += impulse
     state[VELOCITY] = v1
     state[DIRECTION] = 1.0 if v1 > 0.0 else (-1.0 if v1 < 0.0 else 0.0)
-    advance_two(state, two, 0.0, 0.0, 0.0, h, work)
+    advance_two(state, two, 0.0, 0.0, 0.0, h, place, work)
     state[POSITION] = target
 
 

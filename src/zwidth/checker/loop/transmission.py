@@ -252,11 +252,11 @@ class _Roots:
                 break
             r = (norm * r + abs(a) + abs(b)) // factor + 2
             a, b, n = -down * b // factor, (up * a + on * b) // factor, n + step
-        a, b, c, d = (
+        even, tilted, risen, leaning = (
             Enclosed(bits, x, (), off) * self.at(y)
             for x, y in zip(sums, (Fraction(1), 1 / sigma, time, time / sigma), strict=True)
         )
-        return (a, b), (c, d)
+        return (even, tilted), (risen, leaning)
 
     def form(self, wave: Pair) -> Polynomial:
         """det(wave − x)."""
@@ -301,10 +301,10 @@ def _held(p: Loop, told: Read) -> bool | None:
         speeded * now[1] - kept * now[0] + before[0],
         speeded * before[1] - kept * before[0],
     ]
-    n, d = (([at(c) for c in in_whole_numbers(part, p)]) for part in (p.numerator, p.denominator))
-    closed = _plus(_product(d, swing), _product([at(0)] * p.whole + n, heard))
+    n, d = (([at(Fraction(c)) for c in in_whole_numbers(part, p)]) for part in (p.numerator, p.denominator))
+    closed = _plus(_product(d, swing), _product([at(Fraction(0))] * p.whole + n, heard))
     closed = closed if d[0].middle > 0 else [-c for c in closed]
-    at_one = sum(closed, at(0)).sign
+    at_one = sum(closed, at(Fraction(0))).sign
     if at_one != 1:  # a root at z = 1 or beyond; or that is open
         return None if at_one is None else False
     return decay_in_powers(closed)

@@ -30,12 +30,12 @@ from zwidth.loop.plant import (
     WORK,
 )
 from zwidth.loop.setup import Setup, prepare
-from zwidth.loop.two_masses import (
+from zwidth.loop.two_bodies import (
     INSIDE_LOSS,
     MOTOR,
     MOTOR_VELOCITY,
+    SERIES_OF_TWO,
     STATE_OF_TWO,
-    WORK_OF_TWO,
     packed_two,
 )
 from zwidth.loop.two_masses_run import travel_two
@@ -118,7 +118,7 @@ def _through(
     due = apply_due(state, packed_plant(numbers[:_PLANT]), 0, 0, 0.0, 0, 0.0, room, commands)
     if s[TWO] > 0.0:
         two = packed_two(numbers)
-        due = travel_two(state, two, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
+        due = travel_two(state, two, hand, 0.0, h, h, False, due, 0, 0, 0.0, room, commands, work)
     else:
         plant = packed_plant(numbers)
         due = travel(state, plant, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
@@ -132,7 +132,7 @@ def _through(
 def _bodies(s: Array) -> tuple[int, int, int]:
     """Where the numbers of the bodies, their state and the scratch end."""
     if s[TWO] > 0.0:
-        return ARRAYS + _TWO, ARRAYS + _TWO + STATE_OF_TWO, ARRAYS + _TWO + STATE_OF_TWO + WORK_OF_TWO
+        return ARRAYS + _TWO, ARRAYS + _TWO + STATE_OF_TWO, ARRAYS + _TWO + STATE_OF_TWO + SERIES_OF_TWO
     return ARRAYS + _PLANT, ARRAYS + _PLANT + STATE_SIZE, ARRAYS + _PLANT + STATE_SIZE + WORK
 
 
@@ -314,7 +314,7 @@ class Simulated(CompiledConnection):
                 "machine: replay it by zwidth.simulate"
             )
         room = frame.late + 4
-        numbers, work = (setup.plant_numbers, WORK) if setup.two is None else (setup.two, WORK_OF_TWO)
+        numbers, work = (setup.plant_numbers, WORK) if setup.two is None else (setup.two, SERIES_OF_TWO)
         parts = (numbers, setup.state, np.zeros(work + 4 * room), force, anchor, target)
         opened = blank(ARRAYS - OWN + sum(part.size for part in parts), 1, 1)
         s = opened.memory
