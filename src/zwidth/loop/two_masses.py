@@ -387,14 +387,16 @@ def run_two(
     two = packed_two(numbers)
     samples = commands.shape[0] - 1
     due = first_due(first, late, arrivals)
+    pieces = max(1, (target.shape[0] - 1) // samples)
     for k in range(first, last):
         final = k == samples
         h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
+        piece, begun, border = 0, 0.0, h / pieces
         place = state[POSITION] if two.sensed > 0.0 else state[MOTOR]
         reading, command = sample(k, points, place, state, law, memory, missed, commands, record)
         for column in range(k * points, min((k + 1) * points, record.shape[1])):
             record[R_READING, column], record[R_COMMAND, column] = reading, command
-        hand = in_interval(k, h, final, state[POSITION], force, anchor, target, switch)
+        hand = in_interval(k * pieces, h, final, state[POSITION], force, anchor, target, switch)
         now = 0.0
         for point in range(points):
             due = apply_due(state, two.motor, due, k, now, late, offset, arrivals, commands)
@@ -405,9 +407,15 @@ def run_two(
             while now < end:
                 until = min(arrival(due, k, late, offset, arrivals), end)
                 if hand.kinematic:
-                    if hand.bent and now < offset:
-                        until = min(until, offset)
-                    _carry(state, two, on_the_way(hand, offset, until, h), until - now, work)
+                    until = min(until, offset if hand.bent and now < offset else border)
+                    there = on_the_way(hand, offset, until - begun, h if pieces == 1 else border - begun)
+                    _carry(state, two, there, until - now, work)
+                    if until == border and piece + 1 < pieces:
+                        piece, begun = piece + 1, border
+                        border = h if piece + 1 == pieces else h * (piece + 1) / pieces
+                        hand = in_interval(
+                            k * pieces + piece, h, final, state[POSITION], force, anchor, target, switch
+                        )
                 else:
                     here = hand.anchor + hand.speed * now
                     advance_two(state, two, hand.push, here, hand.speed, until - now, work)

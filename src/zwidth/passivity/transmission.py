@@ -229,7 +229,7 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
     decision = decide_elastic(elastic)
     setting = _setting(device, law, elastic)
     if isinstance(decision, ElasticRefutation):
-        violation = ElasticViolation(elastic, setting, decision)
+        violation = ElasticViolation(elastic, setting, decision, device, law)
         if decision.reason == "too close to zero" or not violation.verify():
             return replace(found, open=_TOO_CLOSE)
         scope = scope.replace(contact=violation.contact)
