@@ -74,7 +74,7 @@ def panels_of(verdict: Verdict) -> dict[str, Draw]:
             panels["plane"] = _plane
         panels["budget"] = _budget
     elif isinstance(verdict, TransmissionVerdict) and verdict.elastic is not None:
-        panels["criterion"] = _circle
+        panels["circle"] = _circle
     if verdict.witness is not None:
         panels["motion"] = _witness
     elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
