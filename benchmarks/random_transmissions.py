@@ -7,6 +7,9 @@ one of both at two other gains, of either sign.  Of every eighth plant that is n
 time domain of the tests has to say the same, at (1 ± 1e-3) of the limit.
 
     python random_transmissions.py [PLANTS] [FIRST SEED]
+    python random_transmissions.py motions [PLANTS] [FIRST SEED] [SECONDS]
+
+The second tells how often, at 1.01 of the limit, a motion is found that takes energy out in the simulator.
 """
 
 from __future__ import annotations
@@ -169,8 +172,46 @@ def lifted(elastic: Elastic) -> str:
     return f"growth {it.growth}, at rest {it.at_rest}, least {least}, and {decision}"
 
 
+def motion(seed: int) -> str:
+    """What became of the search for a motion, in a word or two."""
+    loops = Loops(seed)
+    limit = loops.limit()
+    if limit is None:
+        return "no limit"
+    verdict = zw.check(loops.device, loops.at(limit * Fraction(101, 100)), contact="kept", iterate=False)
+    if verdict.outcome != "active":
+        return f"{verdict.outcome} at 1.01"
+    turns = loops.elastic(limit).turn
+    try:
+        found = verdict.witness
+    except zw.InputError as error:
+        return f"not simulated: {str(error)[:60]}"
+    sort = verdict.violation.refutation.reason
+    if found is not None:
+        return f"found: {sort}"
+    return f"not found: {sort}, {'over' if turns > LARGEST_TURN else 'up to'} {LARGEST_TURN} radians a sample"
+
+
+def motions(count: int = 1000, first: int = 0, seconds: int = 600) -> int:
+    """Run as many as the time allows, and print."""
+    end, seen = time.monotonic() + seconds, Counter[str]()
+    for seed in range(first, first + count):
+        if time.monotonic() > end:
+            break
+        start = time.perf_counter()
+        told = motion(seed)
+        seen[told] += 1
+        if "not" in told:
+            print(f"seed {seed}: {told}, {time.perf_counter() - start:.1f} s", flush=True)
+    for what, number in sorted(seen.items()):
+        print(f"{number:>7} {what}")
+    return 0
+
+
 def main() -> int:
     """Run and print."""
+    if sys.argv[1:2] == ["motions"]:
+        return motions(*map(int, sys.argv[2:]))
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     seen: Counter[str] = Counter()

@@ -79,7 +79,7 @@ SHAPES: dict[str, Shape] = {
         told=(
             *_LOOP, "decided_by", "mode", "max_stiffness", "max_gain", "critical_frequency",
             "admissible_speed", "margins", "actuator", "real_hand", "ranges",
-            "max_stiffness_any_transmission", "max_stiffness_viscous", "resonance",
+            "max_stiffness_any_transmission", "max_stiffness_viscous", "resonance", "hand_motion",
         ),
         inside={
             "worst_hand": ("one", "zwidth worst hand 1"),
@@ -90,7 +90,9 @@ SHAPES: dict[str, Shape] = {
     "zwidth worst hand 1": Shape(hands=(*_EVERY, "bounded")),
     "zwidth bounding 1": Shape(),
     "zwidth limit 1": Shape(
-        told=("parameter", "relative_width", "hand", "every_hand", "evaluations", "cut_by_time"),
+        told=(
+            "parameter", "relative_width", "hand", "every_hand", "evaluations", "cut_by_time", "hand_motion",
+        ),
         outcomes=(),
         states=(PASSIVE, ACTIVE),
         values={"proved_passive": "certificate", "proved_active": "violation"},

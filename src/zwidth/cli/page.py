@@ -19,13 +19,12 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.output import GLUE, columns, quiet_pipe, spelled
+from zwidth.passivity.result import Evidence
 from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
-    from zwidth.passivity.witness.witness import Witness
-
+    from zwidth.passivity.outcome_evidence import Moves
 
 Row = tuple[str, str | Text]
 """A name, and what stands beside it."""
@@ -187,7 +186,7 @@ def levels(values: Sequence[float], fancy: bool) -> str:
 _SAMPLES_SHOWN = 48
 
 
-def joules(witness: Witness | Gain) -> str:
+def joules(witness: Moves) -> str:
     """What comes out, and what one round of a cycle gives."""
     total = shown(witness.energy, "J")
     if witness.motion.rounds > 1 and len(witness.motion.repeats) == 1:
@@ -195,22 +194,27 @@ def joules(witness: Witness | Gain) -> str:
     return total
 
 
-def motion_in_short(witness: Witness | Gain) -> str:
-    """How long, how deep and how fast it is."""
+REPLAYED = ", replayed in the simulator, not checked by the independent checker"
+
+
+def motion_in_short(witness: Moves) -> str:
+    """How long, how deep and how fast it is; what it takes where the claim does not say it."""
+    replayed = "" if isinstance(witness, Evidence) else f", takes {shown(witness.energy, 'J')} out{REPLAYED}"
     return (
         f"{witness.motion.samples:.6g} samples in "
         f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
         f"{shown(witness.depth, witness.unit)} at up to {shown(witness.peak_speed, witness.unit + '/s')}"
+        f"{replayed}"
     )
 
 
-def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
+def motion_lines(witness: Moves, fancy: bool) -> Iterator[Text]:
     """The motion, line by line."""
-    yield Text(motion_in_short(witness))
+    yield Text(motion_in_short(witness).partition(", takes")[0])
     for part in witness.motion.repeats:
         if part.times > 1:
             yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")
-    yield Text(f"extracts {joules(witness)}", style="bold")
+    yield Text(f"extracts {joules(witness)}{'' if isinstance(witness, Evidence) else REPLAYED}", style="bold")
     first = witness.positions[:_SAMPLES_SHOWN]
     more = " …" if len(witness.positions) > len(first) else ""
     yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")

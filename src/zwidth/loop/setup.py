@@ -165,6 +165,11 @@ def laid_out(
     rest, operator = _at_rest(device, law, operator, placed, known)
     moved = device.motor_side if flexible and isinstance(device, Device) else device
     frame = frame_of(moved, operator, duration, amplifier, timing, points_per_sample, known)
+    if moved is device and frame.pieces > 1:
+        raise InputError(
+            f"the motion has {frame.pieces} pieces in a sample, and was found for a device with a "
+            "transmission: take the device that was checked"
+        )
     if operator.kinematic:
         assert frame.signals.position is not None
         rest = float(frame.signals.position[0])
@@ -226,6 +231,12 @@ class Frame(NamedTuple):
     def columns(self) -> int:
         """Instants in the record."""
         return self.samples * self.points + 1
+
+    @property
+    def pieces(self) -> int:
+        """Straight pieces of a prescribed motion in an interval."""
+        position = self.signals.position
+        return 1 if position is None else (position.size - 1) // self.samples
 
     def optional(self) -> tuple[Array, Array, Array, Array]:
         """Force, anchor, target and switch as arrays, empty where there is none."""
@@ -420,6 +431,8 @@ def check_signals(signals: Signals, samples: int) -> None:
         values = getattr(signals, name)
         if values is None:
             continue
+        if name == "position" and values.ndim == 1 and values.size > length:
+            length += (values.size - length) // samples * samples  # of pieces of the intervals
         if values.dtype != np.float64 or values.shape != (length,):
             raise InputError(
                 f"the operator's {name} has shape {values.shape}; {samples} samples need ({length},) numbers"

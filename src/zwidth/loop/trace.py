@@ -294,7 +294,9 @@ def _needed_force(frame: Frame, values: dict[str, Array]) -> Array:
     assert target is not None
     h = np.diff(frame.times)
     if bend is None:
-        speed = _held(np.diff(target) / h, frame.points, columns)
+        speeds = np.diff(target) * frame.pieces / np.repeat(h, frame.pieces)
+        at = np.arange(columns) * frame.pieces // frame.points
+        speed = speeds[np.minimum(at, speeds.size - 1)]
     else:
         before = _held((bend - target[:-1]) / frame.offset, frame.points, columns)
         after = _held((target[1:] - bend) / (h - frame.offset), frame.points, columns)
@@ -342,6 +344,9 @@ def _beyond_samples(setup: Setup, velocity: Array) -> float:
     if frame.signals.position is None:
         return float(np.abs(velocity).max() * frame.lengths.max())
     bend = frame.signals.switch_position
+    if frame.pieces > 1:
+        inside = frame.signals.position[:-1].reshape(-1, frame.pieces)
+        return float(np.max(np.ptp(inside, axis=1), initial=0.0))
     if bend is None:
         return 0.0
     ends = np.maximum(frame.signals.position[:-1], frame.signals.position[1:])

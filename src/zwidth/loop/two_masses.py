@@ -19,7 +19,6 @@ from zwidth.loop.plant import (
     GOAL,
     POSITION,
     STOPS,
-    TERMS,
     VELOCITY,
     VISCOUS,
     Drive,
@@ -49,7 +48,6 @@ from zwidth.loop.two_bodies import (
     Start,
     TwoMasses,
     expand_two,
-    packed_two,
     pieces_of_two,
 )
 from zwidth.loop.two_strides import Course, at_once

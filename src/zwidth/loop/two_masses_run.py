@@ -61,15 +61,17 @@ def run_two(
     two = packed_two(numbers)
     samples = commands.shape[0] - 1
     due = first_due(first, late, arrivals)
-    regular = points == 1 and lengths.shape[0] == 1 and arrivals.shape[1] == 0
+    pieces = max(1, (target.shape[0] - 1) // samples)
+    regular = pieces == points == 1 and lengths.shape[0] == 1 and arrivals.shape[1] == 0
     for k in range(first, last):
         final = k == samples
         h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
+        piece, begun, border = 0, 0.0, h / pieces
         place = state[POSITION] if two.sensed > 0.0 else state[MOTOR]
         reading, command = sample(k, points, place, state, law, memory, missed, commands, record)
         for column in range(k * points, min((k + 1) * points, record.shape[1])):
             record[R_READING, column], record[R_COMMAND, column] = reading, command
-        hand = in_interval(k, h, final, state[POSITION], force, anchor, target, switch)
+        hand = in_interval(k * pieces, h, final, state[POSITION], force, anchor, target, switch)
         now = 0.0
         for point in range(points):
             due = apply_due(state, two.motor, due, k, now, late, offset, arrivals, commands)
@@ -77,10 +79,19 @@ def run_two(
             if final:
                 return
             end = h if point == points - 1 else h * (point + 1) / points
-            due = travel_two(
-                state, two, hand, now, end, h, regular, due, k, late, offset, arrivals, commands, work
-            )  # fmt: skip
-            now = end
+            while now < end:
+                until = min(border, end)
+                due = travel_two(
+                    state, two, hand, now, until, begun, border, regular,
+                    due, k, late, offset, arrivals, commands, work,
+                )  # fmt: skip
+                now = until
+                if now == border and piece + 1 < pieces:
+                    piece, begun = piece + 1, border
+                    border = h if piece + 1 == pieces else h * (piece + 1) / pieces
+                    hand = in_interval(
+                        k * pieces + piece, h, final, state[POSITION], force, anchor, target, switch
+                    )
 
 
 @compiled
@@ -90,7 +101,8 @@ def travel_two(
     hand: Hand,
     start: float,
     end: float,
-    h: float,
+    begun: float,
+    border: float,
     regular: bool,
     due: int,
     k: int,
@@ -100,7 +112,10 @@ def travel_two(
     commands: Array,
     work: Array,
 ) -> int:
-    """As `kernel.travel`, of both bodies; a `regular` sample has the stretches of every other, two at most."""
+    """As `kernel.travel`, of both bodies; the hand's path is straight between `begun` and `border`.
+
+    A `regular` sample has the stretches of every other, two at most.
+    """
     now = start
     while now < end:
         until = min(arrival(due, k, late, offset, arrivals), end)
@@ -108,7 +123,14 @@ def travel_two(
         if hand.kinematic:
             if hand.bent and now < offset:
                 until = min(until, offset)
-            _carry(state, two, on_the_way(hand, offset, until, h), until - now, stretch, work)
+            _carry(
+                state,
+                two,
+                on_the_way(hand, offset, until - begun, border - begun),
+                until - now,
+                stretch,
+                work,
+            )
         else:
             here = hand.anchor + hand.speed * now
             advance_two(state, two, hand.push, here, hand.speed, until - now, stretch, work)

@@ -23,6 +23,7 @@ from math import floor, log10, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
@@ -152,6 +153,11 @@ def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> FiniteStiffnessRe
         raise InputError(f"replay takes a verdict of zwidth.check, got {type(verdict).__name__}")
     if verdict.witness is None:
         raise InputError(f"this verdict is {verdict.outcome}: it has no motion that could be replayed")
+    if not isinstance(verdict.witness, Evidence):
+        raise InputError(
+            "the motion of a hand on a transmission was found in the simulator: zwidth simulate replays it, "
+            "and by hands of your choice"
+        )
     if verdict.device.mass is None:
         raise InputError("mass is needed to replay a motion by a real hand, and the device has none")
     if not 0 < damping_ratio < float("inf"):

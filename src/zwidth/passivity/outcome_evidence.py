@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from zwidth.passivity.storage import AvailableStorage
     from zwidth.passivity.storage.gain import Gain
     from zwidth.passivity.witness.elastic import ElasticViolation
+    from zwidth.passivity.witness.replayed import ReplayedMotion
+
+Moves: TypeAlias = "Witness | Gain | ReplayedMotion"
+"""A motion that takes energy out: checked, or replayed in the simulator alone."""
 
 
 Finding = Literal[
@@ -83,7 +87,7 @@ class Found(PassivityAnswer):
         return self.outcome in ("passive", "passive in contact")
 
     @cached_property
-    def witness(self) -> Witness | Gain | None:
+    def witness(self) -> Moves | None:
         """The motion that takes energy out, made when it is first asked for.
 
         None where the loop is not active, or no motion that was found is short enough to be written down.

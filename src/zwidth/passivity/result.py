@@ -20,7 +20,7 @@ from zwidth.showing import Headline, Lines, Part, Table
 def evidence_of(result: object) -> dict[str, Any]:
     """The proofs and motions that a result holds, as plain data."""
     found = {name: getattr(result, name, None) for name in EVIDENCE}
-    return {name: part.saved() for name, part in found.items() if part is not None}
+    return {getattr(part, "KEY", name): part.saved() for name, part in found.items() if part is not None}
 
 
 class Result(Documented):

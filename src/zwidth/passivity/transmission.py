@@ -258,7 +258,7 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
         if elastic is None or not isinstance(most, ElasticRefutation):
             return replace(found, open=_DEPENDS)
         decision = most
-        violation = ElasticViolation(elastic, setting, decision)
+        violation = ElasticViolation(elastic, setting, decision, device, law)
         if decision.reason == "too close to zero" or not violation.verify():
             return replace(found, open=_TOO_CLOSE)
         scope = scope.replace(contact=violation.contact)

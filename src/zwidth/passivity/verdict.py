@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from zwidth.model.device import Device
 from zwidth.passivity.advice import Advice, in_lines
 from zwidth.passivity.outcome_evidence import Found, assumptions, claim, decided_by
-from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -20,7 +19,7 @@ from zwidth.quantity.text import enough, in_unit, in_words, save_json, told_quan
 from zwidth.showing import Lines, Part
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.outcome_evidence import Moves
 
 
 @dataclass(frozen=True, repr=False)
@@ -156,7 +155,7 @@ def _part(left: float | None, has: float) -> float:
     return -inf if left < 0 else inf
 
 
-def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
+def actuator_demand(device: Device, limit: Exact | Interval, witness: Moves) -> str:
     """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
     most = told_quantity(float(ends(limit)[1]), "force", device.motion)
     needed = told_quantity(_peak_force(witness), "force", device.motion, 4)
@@ -168,14 +167,16 @@ def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | 
     )
 
 
-def is_beyond(limit: Exact | Interval, witness: Witness | Gain) -> bool:
+def is_beyond(limit: Exact | Interval, witness: Moves) -> bool:
     """True where the motion asks for more than the limit [N; N·m]."""
     return _peak_force(witness) > float(ends(limit)[1])
 
 
-def _peak_force(witness: Witness | Gain) -> float:
-    if isinstance(witness, Witness):
-        return witness.peak_force
-    from zwidth.passivity.storage.gain import peak_force  # loaded by now
+def _peak_force(witness: Moves) -> float:
+    own: float | None = getattr(witness, "peak_force", None)
+    if own is not None:
+        return own
+    from zwidth.passivity.storage.gain import Gain, peak_force  # loaded by now
 
+    assert isinstance(witness, Gain)
     return peak_force(witness)

@@ -148,9 +148,9 @@ def _headline(verdict: Verdict) -> Padding:
 def _claim(verdict: Verdict) -> str:
     if verdict.outcome != "active":
         return verdict.claim
+    if verdict.scope.transmission == "as given":  # no motion of two bodies is more than replayed
+        return verdict.claim
     if verdict.witness is None:
-        if verdict.scope.transmission == "as given":  # of two bodies none is sought
-            return verdict.claim
         return f"{verdict.claim} No motion that shows it was found short enough to be written down."
     return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 

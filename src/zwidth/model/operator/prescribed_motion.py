@@ -191,7 +191,7 @@ class WitnessMotion(Operator):
     @property
     def intervals(self) -> int:
         """Sample intervals of the whole motion: its duration is so many T."""
-        return len(self._positions) - 1
+        return (len(self._positions) - 1) // self._pieces
 
     kinematic = True
 
@@ -206,11 +206,17 @@ class WitnessMotion(Operator):
         if switches is not None:
             rest = np.full(max(len(times) - 1 - len(switches), 0), self._positions[-1])
             switches = np.concatenate([switches[: len(times) - 1], rest])
-        return Signals(position=held(self._positions, len(times)), switch_position=switches)
+        instants = (len(times) - 1) * self._pieces + 1
+        return Signals(position=held(self._positions, instants), switch_position=switches)
 
     def describe(self, motion: str = "linear") -> str:
         deepest = told_quantity(self._positions.max(), "position", motion)
         return f"motion of a witness, {self.intervals} samples, to {deepest}"
+
+    @property
+    def _pieces(self) -> int:
+        found: int = getattr(getattr(self.witness, "motion", self.witness), "pieces", 1)
+        return found
 
     @property
     def _positions(self) -> Signal:

@@ -38,10 +38,9 @@ from zwidth.passivity.formulas.colgate_stanley_brown import ideal_device, law_of
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
 from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome_evidence import Moves
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Outcome, Scope, unit_key
-from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import told_quantity
@@ -103,7 +102,7 @@ class CouplingCondition(Answer):
         return None if self.verdict is None else self.verdict.certificate
 
     @property
-    def witness(self) -> Witness | Gain | None:
+    def witness(self) -> Moves | None:
         """A motion that takes energy out before the counterexample."""
         return None if self.counterexample is None else self.counterexample.witness
 

@@ -26,7 +26,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from math import cos, pi
+from math import cos, inf, pi
 
 from flint import acb, arb, arb_poly, fmpz_poly
 
@@ -96,11 +96,22 @@ class Elastic:
 
     def value(self, cosine: Fraction) -> arb:
         """The criterion times q |D|² at cos θ."""
+        far, radius, scale = self._circle(cosine)
+        return (far - radius) * scale
+
+    def distance(self, cosine: Fraction) -> float:
+        """|1 + H w C| over √(γ_a γ_q) |H w| at cos θ, to rounding: ≥ 1 where the criterion holds."""
+        with precision(self.bits):
+            far, radius, _ = self._circle(cosine)
+            return float((far / radius).sqrt()) if radius > 0 else inf
+
+    def _circle(self, cosine: Fraction) -> tuple[arb, arb, arb]:
+        """|1 + H w C|² and γ_a γ_q |H w|², times |D|², and q."""
         loop = self.loop
         x, z, squared, force, scale = self.sums(cosine)
         force *= _at(loop.numerator, z) * z**loop.whole_delay * (1 - z)
         law, law_size = _at(loop.denominator, z), (1 - x) * 2 * _size(_at(loop.numerator, z))
-        return (_size(law + force) - squared * law_size) * scale
+        return _size(law + force), squared * law_size, scale
 
     def sums(self, cosine: Fraction) -> tuple[arb, acb, arb, acb, arb]:
         """cos θ, z⁻¹, γ_a γ_q, C and q: on no law do they depend, but for its part of a delay."""

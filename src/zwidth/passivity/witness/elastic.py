@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
+from zwidth.model.device import Device
+from zwidth.model.environment.environment import Environment
 from zwidth.passivity.linear.criterion import frequency
 from zwidth.passivity.linear.transmission import Elastic, ElasticRefutation
 from zwidth.passivity.result import Evidence
@@ -12,6 +15,9 @@ from zwidth.passivity.scope import Contact, unit_key
 from zwidth.passivity.witness.violation import FORMAT
 from zwidth.passivity.witness.witness import Setting
 from zwidth.quantity.text import exact_text
+
+if TYPE_CHECKING:
+    from zwidth.passivity.witness.replayed import ReplayedMotion
 
 
 @dataclass(frozen=True, repr=False)
@@ -21,7 +27,15 @@ class ElasticViolation(Evidence):
     elastic: Elastic
     setting: Setting
     refutation: ElasticRefutation
-    witness = None
+    device: Device
+    environment: Environment
+
+    @cached_property
+    def witness(self) -> ReplayedMotion | None:
+        """A motion that takes energy out where the simulator replays it; None where none was found."""
+        from zwidth.passivity.witness.replayed import replayed_motion  # numpy and the loop take their time
+
+        return replayed_motion(self.device, self.environment, self.elastic, self.refutation.cosine)
 
     @property
     def frequency(self) -> float | None:

@@ -37,6 +37,8 @@ class Motion:
     # samples
     switch_positions: tuple[Fraction, ...] = ()
     repeats: tuple[Repeat, ...] = ()  # the parts done more than once, in order
+    # straight pieces of each interval, at whose ends a position is given
+    pieces: int = 1
 
     def repeated(self, times: int) -> Motion:
         """The same motion with another number of rounds in every repeated part."""
@@ -55,7 +57,7 @@ class Motion:
                 for there, values in zip((x, y), further, strict=True):
                     there += [v + ahead for v in values] if ahead else values
             before = part.last
-        return Motion(tuple(x), tuple(y))
+        return Motion(tuple(x), tuple(y), pieces=self.pieces)
 
     def scaled(self, unit: Fraction) -> Motion:
         """The same motion, so many times as large."""
@@ -73,7 +75,9 @@ class Motion:
     @property
     def samples(self) -> int:
         """Intervals in the whole motion."""
-        return len(self.positions) - 1 + sum((r.times - 1) * (r.last - r.first) for r in self.repeats)
+        return (len(self.positions) - 1) // self.pieces + sum(
+            (r.times - 1) * (r.last - r.first) for r in self.repeats
+        )
 
     @property
     def depth(self) -> Fraction:
@@ -154,7 +158,8 @@ def round_up(target: Fraction) -> Fraction:
     return power * ceil(target / power)
 
 
-KINDS = ("motion", "contact motion", "row motion")
+REPLAYED = "replayed motion"
+KINDS = ("motion", "contact motion", "row motion", REPLAYED)
 
 
 def saved_motion(document: object, name: str) -> Motion:
@@ -163,8 +168,9 @@ def saved_motion(document: object, name: str) -> Motion:
     `document`: as `read_document` gives it; `name`: of the file, for messages.
     """
     found: Any = document
-    if isinstance(found, Mapping) and isinstance(found.get("witness"), Mapping):
-        found = found["witness"]
+    for key in ("witness", "hand_motion"):
+        if isinstance(found, Mapping) and isinstance(found.get(key), Mapping):
+            found = found[key]
     if not isinstance(found, Mapping) or found.get("kind") not in KINDS:
         raise InputError(
             f"{name} holds no motion that takes energy out: save one with zwidth check … -o FILE, of a loop "
@@ -176,11 +182,16 @@ def saved_motion(document: object, name: str) -> Motion:
         parts = found.get("repeats", ())
         parts = [parts] if isinstance(parts, Mapping) else parts  # one part, or a list of them
         repeats = tuple(Repeat(int(r["first"]), int(r["last"]), int(r["times"])) for r in parts)
+        pieces = int(found.get("pieces", 1))
     except (TypeError, ValueError, KeyError, ZeroDivisionError) as error:
         raise InputError(f"{name} holds a motion that cannot be read: {error}") from None
     if len(positions) < 2:
         raise InputError(f"{name} holds a motion of fewer than two positions")
-    return Motion(positions, switches, repeats)
+    if pieces < 1 or (len(positions) - 1) % pieces:
+        raise InputError(
+            f"{name} holds a motion of {len(positions)} positions, and none of {pieces} pieces a sample"
+        )
+    return Motion(positions, switches, repeats, pieces)
 
 
 def _column(document: Mapping[str, Any], *names: str) -> tuple[Fraction, ...]:

@@ -21,10 +21,13 @@ from zwidth.model.device import Device
 from zwidth.passivity.formulas.abbott_okamura import linear_worst_case
 from zwidth.passivity.formulas.abbott_okamura import worst_case as worst_case_at
 from zwidth.passivity.formulas.diolaiti import plane_point
+from zwidth.passivity.outcome_evidence import Moves
+from zwidth.passivity.result import Evidence
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.show.plots.cables import draw_replayed
 from zwidth.show.plots.replay import WHOLE, Replay, replay
 from zwidth.show.plots.style import (
     BLUE,
@@ -76,8 +79,11 @@ def draw_witness(rows: Sequence[Axes], verdict: Verdict) -> None:
     draw_motion(rows, verdict.witness)
 
 
-def draw_motion(rows: Sequence[Axes], found: Witness | Gain) -> None:
+def draw_motion(rows: Sequence[Axes], found: Moves) -> None:
     """The same of a motion by itself."""
+    if not isinstance(found, Evidence):
+        draw_replayed(rows, found)
+        return
     if not isinstance(found, Witness):
         draw_cycle(rows, found)
         return

@@ -13,7 +13,9 @@ from zwidth.errors import InputError
 from zwidth.model.rendering import VirtualCoupling
 from zwidth.model.scene import Scene
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.transmission import TransmissionVerdict
 from zwidth.passivity.verdict import Verdict
+from zwidth.show.plots.cables import draw_circle
 from zwidth.show.plots.linear import draw_criterion, draw_damping, draw_friction, has_friction
 from zwidth.show.plots.motions import draw_motion, draw_witness
 from zwidth.show.plots.planes import draw_plane, has_plane
@@ -71,6 +73,8 @@ def panels_of(verdict: Verdict) -> dict[str, Draw]:
         if verdict.decision.is_spring and has_plane(verdict.device) and verdict.decision.loop.numerator[0]:
             panels["plane"] = _plane
         panels["budget"] = _budget
+    elif isinstance(verdict, TransmissionVerdict) and verdict.elastic is not None:
+        panels["circle"] = _circle
     if verdict.witness is not None:
         panels["motion"] = _witness
     elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
@@ -96,6 +100,10 @@ def _scene(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
 
 def _criterion(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
     draw_criterion(figure.add_subplot(place), verdict)
+
+
+def _circle(figure: Figure, place: SubplotSpec, verdict: TransmissionVerdict) -> None:
+    draw_circle(figure.add_subplot(place), verdict)
 
 
 def _plane(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:

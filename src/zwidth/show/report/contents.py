@@ -194,7 +194,7 @@ def _checked(verdict: Answer, pieces: Sequence[_Examined]) -> Iterator[Part]:
 def _pieces(verdict: Answer) -> Iterator[tuple[str, Evidence]]:
     for name in EVIDENCE:
         piece = getattr(verdict, name, None)
-        if piece is not None:
+        if isinstance(piece, Evidence):
             yield _NAMES[name], piece
     bounded = getattr(verdict, "available_storage", None)
     if bounded is not None and bounded.certificate is not None:

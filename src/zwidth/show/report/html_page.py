@@ -115,6 +115,8 @@ _HEIGHTS = {"plane": 5.0, "motion": 5.0, "budget": 3.6}
 _CAPTIONS = {
     "criterion": "The damping that the loop asks for, and what the device has. The loop is passive against "
     "every sustained motion where the curve stays at or below the line, up to half the sample rate.",
+    "circle": "How far the loop lies from the middle of the circle that the criterion of motor, transmission "
+    "and hand forbids, at every frequency up to half the sample rate. Passive at and above its radius.",
     "plane": "Where the loop lies: viscous friction against sampling, Coulomb friction against the encoder. "
     "Passive at and beyond ½ on both axes.",
     "budget": "What feeds energy in, against what the device takes out.",
@@ -183,6 +185,10 @@ def _motion(verdict: Verdict) -> str:
 
 _SAYS: dict[str, Callable[[Any], str]] = {
     "criterion": _criterion,
+    "circle": lambda verdict: (
+        "Curve of the distance from the middle of the criterion's circle against frequency, in radii: a hand "
+        f"gains where it is below 1. {verdict.claim}"
+    ),
     "plane": _plane,
     "budget": _budget,
     "motion": _motion,

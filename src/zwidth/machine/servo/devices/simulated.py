@@ -118,7 +118,7 @@ def _through(
     due = apply_due(state, packed_plant(numbers[:_PLANT]), 0, 0, 0.0, 0, 0.0, room, commands)
     if s[TWO] > 0.0:
         two = packed_two(numbers)
-        due = travel_two(state, two, hand, 0.0, h, h, False, due, 0, 0, 0.0, room, commands, work)
+        due = travel_two(state, two, hand, 0.0, h, 0.0, h, False, due, 0, 0, 0.0, room, commands, work)
     else:
         plant = packed_plant(numbers)
         due = travel(state, plant, hand, 0.0, h, h, due, 0, 0, 0.0, room, commands, work)
