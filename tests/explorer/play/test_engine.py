@@ -44,6 +44,15 @@ def _loops() -> dict[str, Played]:
             wall,
         ),
     }
+    cable = zw.Transmission(
+        stiffness=2132, damping=0.02, handle_mass=0.03, handle_damping=0.09, handle_coulomb_friction=0.01
+    )
+    stiff = cable.replace(stiffness=28657, handle_coulomb_friction=0, encoder="handle")
+    for name, changes in {
+        "motor on a cable": {"transmission": cable, "delay": 0.0004},
+        "encoder at the handle": {"transmission": stiff, "resolution": 0, "coulomb_friction": 0},
+    }.items():
+        loops[name] = play(_device(**changes), zw.Wall(200), wall, hand=HAND)
     for name, changes in {
         "arms at two rates": {"delay": (0.004, 0.011)},
         "drives of their own": {"follower": _device(), "drive_rate": 4000, "delay": 0.003},
