@@ -93,9 +93,6 @@ REFUSED = {
     "pair": lambda d: zw.Pair(d.motor_side, d, stiffness=10),
     "robust boundary": lambda d: zw.maps.robust_boundary(d, zw.operators.Finger(), (0, 1), points=3),
     "stability boundary": lambda d: zw.maps.stability_boundary(d),
-    "emit": lambda d: zw.emit(d, WALL),
-    "emit anyway": lambda d: zw.emit(d, WALL, anyway=True),
-    "serve": lambda d: zw.serve(d, WALL, hand=zw.operators.Finger(), duration=0.1),
     "port": lambda d: zw.links.NaiveWaves(d),
     "links": lambda d: zw.links.compare(d),
     "stability": lambda d: zw.stability.coupled_stability(d, WALL, zw.operators.Finger()),
@@ -215,13 +212,9 @@ def test_options_take_the_place_of_the_file(err):
 @pytest.mark.parametrize(
     "line",
     [
-        "emit it.toml --stiffness 100 -o out",
-        "serve it.toml --stiffness 100 --operator finger --duration 0.1",
-        "plan it.toml --force-noise 0.01 --transmission.handle-mass 1",
         "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1 --hands finger",
         "check it.toml --stiffness 100 --hands finger",
         "check it.toml --stiffness 100 --active-below 3",
-        "play it.toml --stiffness 100 -o out.html",
         "pair it.toml --stiffness 100",
         "links it.toml",
     ],

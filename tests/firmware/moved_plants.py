@@ -43,6 +43,7 @@ def hand_and_law(hand: Hand, rows: int, seed: int) -> Array:
 
 def plant_in_c(program: Program, name: str) -> str:
     count = len(program.parameters)
+    state, work = (cells.size for cells in program.cells)
     given = "".join(f", in[k * {count} + {i}]" for i in range(count))
     return f"""{plant_header(program, name=name, about=[name])}
 void {name}_rows(const double *in, int rows, double *cells, double *out)
@@ -51,10 +52,10 @@ void {name}_rows(const double *in, int rows, double *cells, double *out)
     {name}_init(&s, 0.0);
     for (int k = 0; k < rows; k += 1) {{
         {name}_step(&s{given});
-        for (int i = 0; i < {STATE_SIZE}; i += 1) {{ out[k * {STATE_SIZE} + i] = s.state[i]; }}
+        for (int i = 0; i < {state}; i += 1) {{ out[k * {state} + i] = s.state[i]; }}
     }}
-    for (int i = 0; i < {STATE_SIZE}; i += 1) {{ cells[i] = s.state[i]; }}
-    for (int i = 0; i < {WORK}; i += 1) {{ cells[{STATE_SIZE} + i] = s.work[i]; }}
+    for (int i = 0; i < {state}; i += 1) {{ cells[i] = s.state[i]; }}
+    for (int i = 0; i < {work}; i += 1) {{ cells[{state} + i] = s.work[i]; }}
 }}
 """
 

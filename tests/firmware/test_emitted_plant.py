@@ -12,8 +12,9 @@ from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_
 from numpy.typing import NDArray
 
 import zwidth as zw
-from zwidth.loop.plant import COULOMB, POSITION, STATE_SIZE, STOPS, VELOCITY, WORK
-from zwidth.machine.firmware.plant import one_period, plant_module, plant_program
+from zwidth.loop.plant import COULOMB, POSITION, STATE_SIZE, STOPS, VELOCITY, WORK, Plant
+from zwidth.loop.two_masses import STATE_OF_TWO, WORK_OF_TWO, TwoMasses
+from zwidth.machine.firmware.plant import one_period, one_period_of_two, plant_module, plant_program
 from zwidth.machine.firmware.program import Program
 
 GIVEN = ("undamped", "slewing", "held_lagging")
@@ -76,6 +77,29 @@ def test_the_module_moves_it_as_the_simulator_does(known: dict[str, Known], tmp_
     given = {n: (k.rows, CELLS, STATE_SIZE) for n, k in known.items()}
     text = "".join(plant_in_javascript(n) for n in known)
     assert not differing(known, run_node(text, tmp_path, given, files))
+
+
+@pytest.mark.parametrize(("lag", "handle_dry"), [(0.0, 0.01), (0.0005, 0.0)])
+def test_motor_and_handle_move_as_the_simulator_has_them(
+    lag: float, handle_dry: float, tmp_path: Path
+) -> None:
+    """In C, with known numbers, an amplifier, and dry friction on both sides."""
+    understood("cc", "-std=c99", "-O2")
+    motor = Plant(0.03, 0.0, 0.06, 0.01, 0.015, 0.0, 0.0, lag, 0.0)
+    handle = Plant(0.03, 0.01, 0.09, handle_dry, handle_dry, 300.0, 1.0, lag, 0.0)
+    two, rows = TwoMasses(motor, handle, 2131.8, 0.02, 0.0, 0.0), hand_and_law("anchored", 1200, 3)
+    state, work = np.zeros(STATE_OF_TWO), np.zeros(WORK_OF_TWO)
+    states = np.empty((len(rows), STATE_OF_TWO))
+    for k, (force, push, *anchor) in enumerate(rows):
+        one_period_of_two(state, work, two, force, push, *anchor, PERIOD)
+        states[k] = state
+    known = {
+        "two": Known(plant_program(two, PERIOD, "anchored"), rows, Ran(states, np.concatenate([state, work])))
+    }
+    library = compiled_c(plant_in_c(known["two"].program, "two"), tmp_path, ("-std=c99", "-O2"))
+    cells = np.zeros(STATE_OF_TWO + WORK_OF_TWO)
+    assert state[STOPS] > 5
+    assert not differing(known, {"two": run_c(library, "two", rows, cells, STATE_OF_TWO)})
 
 
 def test_a_free_hand_has_no_spring() -> None:

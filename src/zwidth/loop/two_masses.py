@@ -206,7 +206,8 @@ def _event(work: Array, own: int, on: int, terms: int, side: float, stiction: fl
         return 2.0
     if side != 0.0:
         return first_zero(work, own, terms, side)
-    return min(_passing(work, on, terms, 1.0, stiction), _passing(work, on, terms, -1.0, stiction))
+    upward = _passing(work, on, terms, 1.0, stiction)  # each leaves its series in work: one after the other
+    return min(upward, _passing(work, on, terms, -1.0, stiction))
 
 
 @compiled
@@ -232,3 +233,7 @@ def _after(
     if turn == u or (u > 0.0 and v * side <= 0.0):
         return 0.0, 0.0
     return v, side
+
+
+PARTS = (_stretch, expand_two, _event, _passing, _after)
+"""What stays a function of its own where the step is written out."""

@@ -42,6 +42,7 @@ def run_node(script: str, folder: Path) -> Any:
 
 def played(jobs: list[Job], folder: Path) -> list[Array]:
     (folder / "plant.mjs").write_text(plant_text(), encoding="utf-8")
+    (folder / "two.mjs").write_text(plant_text(two=True), encoding="utf-8")
     given = []
     for i, job in enumerate(jobs):
         (folder / f"law{i}.mjs").write_text(job.loop.law or "export const none = 0;\n", encoding="utf-8")
@@ -56,7 +57,9 @@ _RUN = """\
 import { readFileSync } from "node:fs";
 import { Engine } from "OURS/engine.mjs";
 import { Recording } from "OURS/recording.mjs";
-import * as plant from "./plant.mjs";
+import * as one from "./plant.mjs";
+import * as two from "./two.mjs";
+const plant = { ...one, two };
 const done = [];
 for (const [i, { facts, law, pointer, held }] of JSON.parse(readFileSync("jobs.json")).entries()) {
     const engine = new Engine(facts, plant, law ? await import(`./law${i}.mjs`) : null);
@@ -105,4 +108,6 @@ def simulated(loop: Played, pointer: Array) -> Array:
 
 def _columns(trace: Any) -> Array:
     friction = trace["viscous_loss"].values + trace["coulomb_loss"].values
+    if "transmission_loss" in trace:
+        friction = friction + trace["transmission_loss"].values
     return np.stack([*(trace[name].values for name in QUANTITIES), friction], 1)

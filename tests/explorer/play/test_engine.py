@@ -44,6 +44,15 @@ def _loops() -> dict[str, Played]:
             wall,
         ),
     }
+    cable = zw.Transmission(
+        stiffness=2132, damping=0.02, handle_mass=0.03, handle_damping=0.09, handle_coulomb_friction=0.01
+    )
+    stiff = cable.replace(stiffness=28657, handle_coulomb_friction=0, encoder="handle")
+    for name, changes in {
+        "motor on a cable": {"transmission": cable, "delay": 0.0004},
+        "encoder at the handle": {"transmission": stiff, "resolution": 0, "coulomb_friction": 0},
+    }.items():
+        loops[name] = play(_device(**changes), zw.Wall(200), wall, hand=HAND)
     for name, changes in {
         "arms at two rates": {"delay": (0.004, 0.011)},
         "drives of their own": {"follower": _device(), "drive_rate": 4000, "delay": 0.003},
@@ -118,3 +127,24 @@ def test_what_cannot_be_played_is_refused() -> None:
     law = zw.FrictionCompensation(coulomb=0.01, viscous=0.1, speed=0.01)
     with pytest.raises(zw.InputError, match="compensation"):
         play_pair(zw.Pair(_device(), _device(), stiffness=50, compensation=law))
+
+
+def test_a_page_has_what_moves_two_masses_where_a_loop_has_them() -> None:
+    cable = zw.Transmission(stiffness=2132, handle_mass=0.03)
+    two = play(_device(transmission=cable), zw.Wall(90))
+    assert two.facts()["arms"][0]["two"]["at_handle"] is False
+    assert "plant.two = (() =>" in play_page([two])
+    assert "plant.two = null;" in play_page([play(_device(), zw.Wall(90))])
+    with pytest.raises(zw.InputError, match=r"transmission\.stiffness is unknown, and two masses"):
+        play(_device(transmission=cable.replace(stiffness=None)), zw.Wall(90))
+
+
+def test_a_motor_hums_on_its_cable_under_finger_tips_and_not_under_a_finger(tmp_path: Path) -> None:
+    """Pressed and held still into 1000 N/m, where the motor alone pays for 120."""
+    cable = zw.Transmission(stiffness=2132, handle_mass=0.03, handle_damping=0.09)
+    device = zw.Device(mass=0.03, damping=0.06, rate=1000, transmission=cable)
+    loops = [play(device, zw.Wall(1000), hand=hand) for hand in (LinearHand(0.006, 200, 0.2), None)]
+    pointer = np.concatenate([np.linspace(loops[0].start, 0.01, 400), np.full(1200, 0.01)])
+    tips, finger = played([Job(loop, pointer) for loop in loops], tmp_path)
+    assert np.ptp(tips[-200:, 5]) > 0.5
+    assert np.ptp(finger[-200:, 5]) < 1e-3

@@ -3,16 +3,30 @@
     M ẍ = F − f_a − b ẋ − f_c sgn ẋ + k (x_a − x) + c (ẋ_a − ẋ)        M = m + m_h
 
 with the stops, the stiction, the turns and the energies of `loop.step`: the same operations, the same bits.
+Motor and handle with a transmission between them move as `loop.two_masses` has it, and as exactly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.loop.plant import FORCE, GOAL, STATE_SIZE, WORK, Plant, free_response, product_integral
+from zwidth.loop import two_masses
+from zwidth.loop.plant import (
+    FORCE,
+    GOAL,
+    STATE_SIZE,
+    WORK,
+    Plant,
+    first_zero,
+    free_response,
+    integral,
+    product_integral,
+    value,
+)
 from zwidth.loop.step import advance, book
+from zwidth.loop.two_masses import TwoMasses, advance_two
 from zwidth.machine.firmware.c99 import C99
 from zwidth.machine.firmware.c99 import KEYWORDS as OF_C
 from zwidth.machine.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
@@ -28,6 +42,7 @@ Hand = Literal["free", "anchored"]
 """A force alone; or a spring and a damper to an anchor that moves, as well."""
 
 _APART = (exp, expm1, log, log1p, free_response, product_integral, book)
+_OF_TWO = (*_APART, first_zero, integral, value, *two_masses.PARTS)
 
 _PLACES = (
     ("POSITION", "m, or rad"),
@@ -43,6 +58,14 @@ _PLACES = (
     ("HAND_LOSS", "J: lost in the hand's damper"),
     ("STOPS", "how often it came to rest or turned round"),
     ("FAULT", "not 0 if the step gave up"),
+)
+_PLACES_OF_TWO = (
+    ("MOTOR", "m, or rad: of the motor, POSITION is of the handle"),
+    ("MOTOR_VELOCITY", "m/s"),
+    ("MOTOR_DIRECTION", "sign of the velocity, 0 at rest"),
+    ("MOTOR_VISCOUS", "J: of VISCOUS what was lost at the motor"),
+    ("MOTOR_COULOMB", "J: of COULOMB what was lost at the motor"),
+    ("INSIDE_LOSS", "J: lost in the transmission's damper"),
 )
 
 
@@ -67,32 +90,72 @@ def one_period(
     advance(state, plant, push, anchor, anchor_speed, period, work)
 
 
+def one_period_of_two(
+    state: Array,
+    work: Array,
+    two: TwoMasses,
+    force: float,
+    push: float,
+    anchor: float,
+    anchor_speed: float,
+    period: float,
+) -> None:
+    """As `one_period`, of motor and handle; state and work as `loop.two_masses.advance_two` has them."""
+    state[GOAL] = force
+    if two.motor.lag == 0.0 and two.motor.slew == 0.0:
+        state[FORCE] = force
+    advance_two(state, two, push, anchor, anchor_speed, period, work)
+
+
 def given_plant(*, amplified: bool) -> Plant:
     """A plant whose numbers are given at every call; without those of an amplifier where there is none."""
     numbers = Plant(*(Variable("real", name) for name in Plant._fields))  # type: ignore[arg-type]
     return numbers if amplified else numbers._replace(lag=0.0, slew=0.0)
 
 
-def plant_program(plant: Plant | None, period: float | None, hand: Hand) -> Program:
+def given_two() -> TwoMasses:
+    """Motor and handle whose numbers are given at every call, without an amplifier; a hand that pushes."""
+    motor = given_plant(amplified=False)._replace(hand_mass=0.0, stiffness=0.0, hand_damping=0.0)
+    own: dict[str, Any] = {
+        f: Variable("real", f"handle_{f}") for f in ("mass", "damping", "coulomb", "stiction")
+    }
+    spring: Any = Variable("real", "spring")
+    damper: Any = Variable("real", "damper")
+    return TwoMasses(motor, given_plant(amplified=False)._replace(**own), spring, damper, 0.0, 0.0)
+
+
+def plant_program(plant: Plant | TwoMasses | None, period: float | None, hand: Hand) -> Program:
     """The program of one period.
 
-    Some numbers of the plant may be a `given_plant`'s; without it, or without a period T > 0 [s], they are
-    given at every call, the period last.
+    Some numbers of the plant may be a `given_plant`'s, or `given_two`'s; without it, or without a period
+    T > 0 [s], they are given at every call, the period last.
     """
     if period is not None and not period > 0.0:
         raise InputError(f"the plant is moved from sample to sample: a period is > 0 s, got {period!r}")
-    if hand == "free" and plant is not None and (plant.stiffness != 0.0 or plant.hand_damping != 0.0):
+    held = plant.handle if isinstance(plant, TwoMasses) else plant
+    if hand == "free" and held is not None and (held.stiffness != 0.0 or held.hand_damping != 0.0):
         raise InputError("this hand has a spring or a damper: they need an anchor, take hand='anchored'")
-    numbers = plant or given_plant(amplified=True)
-    if plant is None and hand == "free":
-        numbers = numbers._replace(stiffness=0.0, hand_damping=0.0)
     anchor = (
         [Variable("real", "anchor"), Variable("real", "anchor_speed")] if hand == "anchored" else [0.0, 0.0]
     )
-    cells = Cells("state", STATE_SIZE), Cells("work", WORK)
-    given = Variable("real", "force"), Variable("real", "push")
     length = Variable("real", "period") if period is None else float(period)
-    return specialised(one_period, (*cells, numbers, *given, *anchor, length), _APART)
+    given = Variable("real", "force"), Variable("real", "push"), *anchor, length
+    if isinstance(plant, TwoMasses):
+        both = Cells("state", two_masses.STATE_OF_TWO), Cells("work", two_masses.WORK_OF_TWO)
+        return specialised(one_period_of_two, (*both, plant, *given), _OF_TWO)
+    numbers = plant or given_plant(amplified=True)
+    if plant is None and hand == "free":
+        numbers = numbers._replace(stiffness=0.0, hand_damping=0.0)
+    cells = Cells("state", STATE_SIZE), Cells("work", WORK)
+    return specialised(one_period, (*cells, numbers, *given), _APART)
+
+
+def _laid_out(program: Program) -> tuple[int, int, list[tuple[int, str, str]], list[str]]:
+    """How long state and work are, what is where in the state, and what of it stands where a touch begins."""
+    state, work = (cells.size for cells in program.cells)
+    of_two = () if state == STATE_SIZE else enumerate(_PLACES_OF_TWO, STATE_SIZE)
+    places = [(k, place, meaning) for k, (place, meaning) in (*enumerate(_PLACES), *of_two)]
+    return state, work, places, [place for _, place, _ in places if place in ("POSITION", "MOTOR")]
 
 
 def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] = ()) -> str:
@@ -103,6 +166,7 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
     c = C99(program, OF_C | {name}, prefix=name)
     body = c.lines()
     functions = c.function_lines()
+    state, work, places, begin = _laid_out(program)
     given = "".join(f", double {v.hint}" for v in program.parameters)
     upper = name.upper()
     lines = [
@@ -119,9 +183,9 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
         UNCONTRACTED,
         "",
         "/* what is where in state[] */",
-        *(f"#define {upper}_{place} {k}  /* {meaning} */" for k, (place, meaning) in enumerate(_PLACES)),
+        *(f"#define {upper}_{place} {k}  /* {meaning} */" for k, place, meaning in places),
         "",
-        f"typedef struct {{ double state[{STATE_SIZE}]; double work[{WORK}]; }} {name}_state;",
+        f"typedef struct {{ double state[{state}]; double work[{work}]; }} {name}_state;",
         "",
         *c.table_lines(),
         *c.helper_lines(),
@@ -130,9 +194,9 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
         "/* At rest at this position, no force, no energy counted. */",
         f"static inline void {name}_init({name}_state *s, double position)",
         "{",
-        f"    for (int k = 0; k < {STATE_SIZE}; k += 1) {{ s->state[k] = 0.0; }}",
-        f"    for (int k = 0; k < {WORK}; k += 1) {{ s->work[k] = 0.0; }}",
-        f"    s->state[{upper}_POSITION] = position;",
+        f"    for (int k = 0; k < {state}; k += 1) {{ s->state[k] = 0.0; }}",
+        f"    for (int k = 0; k < {work}; k += 1) {{ s->work[k] = 0.0; }}",
+        *(f"    s->state[{upper}_{place}] = position;" for place in begin),
         "}",
         "",
         "/* One period under the law's force, which opposes penetration, and the hand's push. */",
@@ -151,11 +215,12 @@ def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] 
 def plant_module(program: Program, *, about: Sequence[str] = ()) -> str:
     """The ES module of such a program: `init`, `step`, and where in `state` everything is."""
     js = JavaScript(program, OF_JAVASCRIPT)
+    state, work, places, begin = _laid_out(program)
     body = js.lines()
     functions = js.function_lines()
     lines = [
         *comment(about),
-        *(f"export const {place} = {k}; // {meaning}" for k, (place, meaning) in enumerate(_PLACES)),
+        *(f"export const {place} = {k}; // {meaning}" for k, place, meaning in places),
         "",
         *js.table_lines(),
         *js.helper_lines(),
@@ -163,8 +228,8 @@ def plant_module(program: Program, *, about: Sequence[str] = ()) -> str:
         *functions,
         "/* At rest at this position, no force, no energy counted. */",
         "export function init(position) {",
-        f"    const s = {{ state: new Float64Array({STATE_SIZE}), work: new Float64Array({WORK}) }};",
-        "    s.state[POSITION] = position;",
+        f"    const s = {{ state: new Float64Array({state}), work: new Float64Array({work}) }};",
+        *(f"    s.state[{place}] = position;" for place in begin),
         "    return s;",
         "}",
         "",

@@ -286,8 +286,9 @@ def require_rigid(device: Device, what: str) -> None:
     if device.transmission is not None:
         raise InputError(
             f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
-            "them; zwidth check, limit, map, sweep and simulate know it. To ask of the motor alone leave "
-            "out [device.transmission] and --transmission, in Python take device.motor_side"
+            "them; zwidth check, limit, map, sweep, compare, simulate, serve, emit and play know it. To ask of "
+            "the motor alone leave out [device.transmission] and --transmission, in Python take "
+            "device.motor_side"
         )
 
 

@@ -11,7 +11,7 @@ const NOBODY = { mass: 0, stiffness: 0, damping: 0 };
 export class Arm {
     constructor(facts, plant) {
         this.facts = facts;
-        this.plant = plant;
+        this.plant = facts.two ? plant.two : plant;
         this.hand = facts.hand ?? NOBODY;
         this.restart();
     }
@@ -25,6 +25,12 @@ export class Arm {
         return this.s.state[this.plant.POSITION];
     }
 
+    /* Where the encoder is: on the handle, or at a motor behind a transmission. */
+    get sensed() {
+        const { two } = this.facts;
+        return two && !two.at_handle ? this.s.state[this.plant.MOTOR] : this.position;
+    }
+
     get velocity() {
         return this.s.state[this.plant.VELOCITY];
     }
@@ -35,17 +41,18 @@ export class Arm {
 
     /* What the hand put in, what the actuator put in, what friction took [J]. */
     get energies() {
-        const { state } = this.s, { HAND_WORK, ACTUATOR_WORK, VISCOUS, COULOMB } = this.plant;
-        return [state[HAND_WORK], state[ACTUATOR_WORK], state[VISCOUS] + state[COULOMB]];
+        const { state } = this.s, { HAND_WORK, ACTUATOR_WORK, VISCOUS, COULOMB, INSIDE_LOSS } = this.plant;
+        const inside = this.facts.two ? state[INSIDE_LOSS] : 0;
+        return [state[HAND_WORK], state[ACTUATOR_WORK], state[VISCOUS] + state[COULOMB] + inside];
     }
 
     get counts() {
-        return Math.floor(this.position / this.facts.resolution + 0);
+        return Math.floor(this.sensed / this.facts.resolution + 0);
     }
 
     /* The reading [m; rad]. */
     get reading() {
-        return this.facts.resolution > 0 ? this.facts.resolution * this.counts : this.position;
+        return this.facts.resolution > 0 ? this.facts.resolution * this.counts : this.sensed;
     }
 
     push(force) {
@@ -73,11 +80,12 @@ export class Arm {
     }
 
     advance(hand, anchor, speed, time) {
-        const p = this.facts.plant, force = this.force;
-        this.plant.step(
-            this.s, p.mass, hand.mass, p.damping, p.coulomb, p.stiction, hand.stiffness, hand.damping,
-            force, 0, anchor, speed, time,
-        );
+        const { plant: p, two } = this.facts, held = [hand.stiffness, hand.damping];
+        const moved = two
+            ? [p.mass, p.damping, p.coulomb, p.stiction, two.mass, hand.mass, two.damping, two.coulomb, two.stiction,
+                ...held, two.spring, two.damper]
+            : [p.mass, hand.mass, p.damping, p.coulomb, p.stiction, ...held];
+        this.plant.step(this.s, ...moved, this.force, 0, anchor, speed, time);
     }
 }
 
@@ -90,7 +98,7 @@ class SingleLaw {
     }
 
     get seen() {
-        return this.arm.facts.resolution > 0 ? this.arm.counts : this.arm.position;
+        return this.arm.facts.resolution > 0 ? this.arm.counts : this.arm.sensed;
     }
 
     restart() {

@@ -17,11 +17,12 @@ from typing import Any
 from zwidth.errors import InputError
 from zwidth.loop.pair.setup import prepare_pair
 from zwidth.loop.plant import Plant
-from zwidth.loop.setup import frame_of
+from zwidth.loop.setup import MOST_PIECES, frame_of
+from zwidth.loop.two_masses import numbers_of, packed_two
 from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import law_program
-from zwidth.machine.firmware.plant import given_plant, plant_module, plant_program
-from zwidth.model.device.device import Device
+from zwidth.machine.firmware.plant import given_plant, given_two, plant_module, plant_program
+from zwidth.model.device import Device, Transmission
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator import LinearHand, Tracking, usual_hand
@@ -29,7 +30,9 @@ from zwidth.model.pairs import Pair
 from zwidth.passivity.check import check
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import COLOUR
+from zwidth.passivity.transmission import seen_at_motor
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.showing import element
 
@@ -86,13 +89,18 @@ def played(
         If the loop cannot be simulated or emitted, or its delay is too long to be played.
     """
     law = as_environment(environment)
-    text = module(law_program(device, law), about=["The law that is played."], numbers=())
+    text = module(law_program(seen_at_motor(device), law), about=["The law that is played."], numbers=())
     holding = hand or usual_hand(device).hand
     period = device.exact("sample_period")
     shown = _REACH[device.motion] if reach is None else reach
     begin = (_OUTSIDE * shown if law.unilateral else 0.0) if start is None else start
-    frame = frame_of(device, _still(holding), period, None, None, 1)
-    arm = _arm(device, period, frame.plant, holding, begin)
+    frame = frame_of(device.motor_side, _still(holding), period, None, None, 1)
+    arm = _arm(device.motor_side, period, frame.plant, holding, begin)
+    numbers = numbers_of(device, _still(holding), frame.plant, MOST_PIECES)
+    if numbers is not None:
+        two = packed_two(numbers)
+        own = {key: float(getattr(two.handle, key)) for key in _USED}
+        arm |= {"two": {**own, "spring": two.spring, "damper": two.damper, "at_handle": two.sensed > 0.0}}
     return Played(
         name=name or law.describe(device.motion),
         loop=(device, law),
@@ -174,6 +182,9 @@ def _still(hand: LinearHand) -> Tracking:
     return Tracking([0.0], mass=hand.mass, stiffness=hand.stiffness, damping=hand.damping)
 
 
+_USED = ("mass", "damping", "coulomb", "stiction")
+
+
 def _arm(device: Device, period: Fraction, plant: Plant, hand: LinearHand, start: float) -> dict[str, Any]:
     """What the engine needs of an arm, SI."""
     if device.exact("delay") > LONGEST_DELAY:
@@ -182,13 +193,12 @@ def _arm(device: Device, period: Fraction, plant: Plant, hand: LinearHand, start
             "the hand would feel nothing for so long"
         )
     delay = device.exact("delay") / period
-    used = ("mass", "damping", "coulomb", "stiction")
     return {
         "period": float(period),
         "late": delay.numerator // delay.denominator,
         "offset": float(delay % 1 * period),
         "resolution": float(device.exact("resolution")),
-        "plant": {key: float(getattr(plant, key)) for key in used},
+        "plant": {key: float(getattr(plant, key)) for key in _USED},
         "hand": {key: float(value) for key, value in hand._asdict().items()},
         "start": float(start),
         "limit": float(device.exact("force_limit")) if device.force_limit is not None else 0.0,
@@ -283,6 +293,11 @@ def _device_numbers(device: Device, whose: str = "") -> Iterator[tuple[str, str,
     for key, value in device.parameters().items():
         own = GLOSSARY[key]
         yield own.symbol, f"{in_words(key)}{whose}", shown(value, own.unit_for(device.motion))
+    if device.transmission is not None:
+        for key, value in device.transmission.parameters().items():
+            own = parameters_of(Transmission)[key].quantity
+            yield own.symbol, f"transmission: {in_words(key)}", shown(value, own.unit_for(device.motion))
+        yield "", "encoder", f"at the {device.transmission.encoder}"
 
 
 def _hand_numbers(name: str, hand: LinearHand, motion: str) -> Iterator[tuple[str, str, str]]:
@@ -320,8 +335,10 @@ def play_page(loops: Sequence[Played], *, title: str = "Play with a loop") -> st
     """
     if not loops:
         raise InputError("a page plays one loop at least; got none")
+    two = any("two" in arm for loop in loops for arm in loop.arms)
     modules = [
         f"const plant = {_as_function(plant_text())};",
+        f"plant.two = {_as_function(plant_text(two=True)) if two else 'null'};",
         f"const laws = [{', '.join(_as_function(loop.law) if loop.law else 'null' for loop in loops)}];",
         *(f"const {name} = {_as_function(_file(f'{name}.mjs'))};" for name in MODULES),
         'view.start(document.getElementById("play"), plant, laws);',
@@ -337,9 +354,12 @@ def play_page(loops: Sequence[Played], *, title: str = "Play with a loop") -> st
     return re.sub(r"<!-- (\w+) -->", lambda found: parts[found[1]], _file("page.html"))
 
 
-def plant_text() -> str:
-    """The module that moves every device and hand: it is told their numbers, and how long."""
-    return plant_module(plant_program(given_plant(amplified=False), None, "anchored"))
+def plant_text(*, two: bool = False) -> str:
+    """The module that moves every device and hand: it is told their numbers, and how long.
+
+    `two` for those with a transmission.
+    """
+    return plant_module(plant_program(given_two() if two else given_plant(amplified=False), None, "anchored"))
 
 
 def _file(name: str) -> str:
