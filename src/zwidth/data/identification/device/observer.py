@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from math import ceil, log2
 
 import numpy as np
-from numpy.typing import NDArray
 
 from zwidth.data.identification.device.moments import pieces
 from zwidth.data.logs import Log
@@ -192,10 +191,10 @@ class Stretches:
         return replace(self, read=(read,), force=(force,), hand=(hand,))
 
     def shakes(self, friction: float) -> bool:
-        """True where the actuator's force changes, within 5 ms, more than twice this."""
+        """True where the actuator's force changes, within 5 ms, by more than twice this and half of itself."""
         whole = max(round(LIVELY / self.period), 1)
         changes = np.concatenate([force[whole:] - force[:-whole] for force in self.force])
-        return float(np.std(changes)) > 2 * friction
+        return float(np.std(changes)) > max(2 * friction, self.applied / 2)
 
     @property
     def applied(self) -> float:

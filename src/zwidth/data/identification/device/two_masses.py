@@ -54,11 +54,18 @@ ROUNDS = 8
 STARTS = tuple(20.0 * 2 ** (step / 2) for step in range(11))
 """Frequencies at which the two may swing against each other [Hz]."""
 
-DAMPED, KEPT = 0.1, 3
+DAMPED, KEPT = 0.1, 5
 """Twice the ratio to critical damping of that swing, and how many of the starts are gone on from."""
+
+ALIKE = 0.1
+"""Part by which masses or stiffness of two starts that both are kept differ at least."""
 
 SHARES = (0.5, 0.1)
 """Of the mass, what may be behind the cable."""
+
+PART = 0.5
+"""Of what the observer before the last finds otherwise, that is taken for the error of the method: half of it is
+chance."""
 
 EXPLAINED = 1.2
 """Times the surprise expected of the encoder's steps that may be left."""
@@ -126,9 +133,12 @@ def two_masses(log: Log, one: Mapping[str, Estimate], delay: float) -> TwoMasses
     if not _surely_less(two, alone):
         return None
     errors = two.errors * np.where(LOGARITHM, two.values, 1.0)
+    shifts = PART * np.abs(two.values - seen.fit(two.values, TIGHTER[-2], ROUNDS).values)
     found = {
-        name: Estimate(float(value), float(error), 0.0, BLOCKS - len(NAMES), unit_of(_LIKE[name], log.motion))
-        for name, value, error in zip(NAMES, two.values, errors, strict=True)
+        name: Estimate(
+            float(value), float(error), float(shift), BLOCKS - len(NAMES), unit_of(_LIKE[name], log.motion)
+        )
+        for name, value, error, shift in zip(NAMES, two.values, errors, shifts, strict=True)
         if name != "offset"
     }
     motor = {name: found.pop(name) for name in NAMES[: ONE - 1]}
@@ -149,8 +159,11 @@ def _starts(seen: Stretches, alone: Array) -> list[Array]:
             k = (2 * pi * frequency) ** 2 * one * other / m
             c = DAMPED * 2 * pi * frequency * one * other / m
             tried.append(few.fit(np.array([one, b / 2, f / 2, offset, other, b / 2, f / 2, k, c]), LOOSE, 5))
-    tried.sort(key=lambda fit: fit.cost)
-    return [fit.values for fit in tried[:KEPT]]
+    kept: list[Array] = []
+    for fit in sorted(tried, key=lambda fit: fit.cost):
+        if all(abs(np.log(fit.values[[0, 4, 7]] / each[[0, 4, 7]])).max() > ALIKE for each in kept):
+            kept.append(fit.values)
+    return kept[:KEPT]
 
 
 def _tightened(seen: Stretches, *starts: Array) -> Fit:
