@@ -108,7 +108,9 @@ def record(seeds, owns, seconds):
             tick, at = i // TICK, i % every == 0
             goal = goal_of(i * STEP)
             read = np.floor(state[0] / step)
-            motor = np.where(at & ~by_hand, held[i // (2 * every), np.arange(runs)] - stiff * (goal - read * step), motor)
+            motor = np.where(
+                at & ~by_hand, held[i // (2 * every), np.arange(runs)] - stiff * (goal - read * step), motor
+            )
         hand = by_hand * (3 * stiff * (goal - state[2]) - 0.1 * np.sqrt(stiff) * state[3]) + beats[i]
         if i % TICK == 0:
             counts[tick], forces[0, tick], forces[1, tick] = read, motor, (hand + before) / 2
@@ -153,11 +155,13 @@ def one(task):
     if found.shows("wrong model"):
         return {**told, "refused": "wrong model"}
     told["promise"] = 2 * found.least_damping(0.99) / own["period"]
-    told["as one"] = found.shows("as one")
+    told["as one"] = found.as_one
     told["sum"] = 2 * (own["b1"] + own["b2"]) / own["period"]
     if found.cable is not None:
         pairs = {**found.cable.motor, **{f"2 {n}": e for n, e in found.cable.between.items()}}
-        truth = dict(zip(pairs, (own[n] for n in ("m1", "b1", "f1", "m2", "b2", "f2", "k", "c")), strict=True))
+        truth = dict(
+            zip(pairs, (own[n] for n in ("m1", "b1", "f1", "m2", "b2", "f2", "k", "c")), strict=True)
+        )
         told["held"] = {n: e.interval()[0] <= truth[n] <= e.interval()[1] for n, e in pairs.items()}
         told["z"] = {n: round((e.value - truth[n]) / e.error, 1) for n, e in pairs.items()}
         told["wide"] = {n: round(e.error / truth[n], 3) for n, e in pairs.items()}
@@ -210,7 +214,11 @@ def main():
             range(given.first + at, given.first + min(at + BATCH, logs)) for at in range(0, logs, BATCH)
         ]
         with ProcessPoolExecutor(given.jobs) as pool:
-            found = [told for part in pool.map(batch, batches, [rigid] * len(batches), [given.seconds] * len(batches)) for told in part]
+            found = [
+                told
+                for part in pool.map(batch, batches, [rigid] * len(batches), [given.seconds] * len(batches))
+                for told in part
+            ]
         for kind in KINDS:
             tell(f"{name}, {kind}", [f for f in found if f["kind"] == kind])
         tell(f"{name}, all", found)

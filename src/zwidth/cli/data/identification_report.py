@@ -78,6 +78,9 @@ def _headline(found: Identification) -> Padding:
 def _claim(found: Identification) -> str:
     if found.identified.shows("wrong model"):
         return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
+    if found.identified.shows("not one mass"):
+        return "Neither one mass nor two explain the readings: these numbers allow no wall."
+    as_one = ", if motor and handle move as one" if found.identified.as_one else ""
     device = found.identified.device(found.confidence, **found.others)
     device = seen_at_motor(device)
     stiffest = check_by_closed_forms(device, Wall(stiffness=1)).max_stiffness
@@ -89,7 +92,7 @@ def _claim(found: Identification) -> str:
     seen, unit = shown(found.identified.speed, "rad/s" if turn else "m/s", 3), "N*m/rad" if turn else "N/m"
     return (
         f"Spring walls up to {shown_at_most(stiffest, unit)} are passive on this device, "
-        f"{confidence}, as far as its friction was seen: up to {seen}."
+        f"{confidence}{as_one}, as far as its friction was seen: up to {seen}."
     )
 
 

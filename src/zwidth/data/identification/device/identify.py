@@ -27,7 +27,7 @@ from zwidth.data.identification.device.fit import Found, gather
 from zwidth.data.identification.device.numbers import IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES
 from zwidth.data.identification.device.table import report, source_name
-from zwidth.data.identification.device.two_masses import two_masses
+from zwidth.data.identification.device.two_masses import seen_to_swing, two_masses
 from zwidth.data.logs import Log, read_log
 from zwidth.errors import InputError
 from zwidth.lazy import above
@@ -73,13 +73,14 @@ def identify_log(
     if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log))
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
-    shaken = log.channels == ("actuator_force",) and model == "Coulomb and viscous" and mass is None
+    shaken = model == "Coulomb and viscous" and mass is None and seen_to_swing(log, estimates, late)
     apart = two_masses(log, estimates, late) if shaken else None
     cable = apart if apart is not None and apart.explain else None
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates if cable is None else {**estimates, **cable.motor},
         cable=cable,
+        as_one=not shaken,
         directions=directions,
         fastest=quickest,
         slopes=slopes,

@@ -75,6 +75,12 @@ class IdentifiedNumbers:
         only_shown=True,
         default=None,
     )
+    as_one: bool = answered(
+        "True where the log cannot show whether motor and handle move as one, as a hand's or a slow one: "
+        "what is promised holds if they do",
+        only_shown=True,
+        default=True,
+    )
     seen: Trace = answered(
         "mean speed and friction of up to some ten thousand pulses, for pictures", only_shown=True
     )
@@ -136,6 +142,8 @@ class IdentifiedNumbers:
         """The slope that friction has at least, each way and up to `speed`; 0 where it may fall."""
         if self.cable is not None:
             return self.cable.least_damping(_checked(confidence))
+        if self.shows("not one mass"):
+            return 0.0
         mean = self.estimates["damping"].interval(_checked(confidence))[0]
         return max(min(mean, self.directions.least(confidence), self.slopes.least(confidence)), 0.0)
 

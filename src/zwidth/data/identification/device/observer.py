@@ -10,11 +10,10 @@ found, costs little.  A tight one knows more.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil, log2
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_are
 
 from zwidth.data.identification.device.moments import pieces
 from zwidth.data.logs import Log
@@ -42,8 +41,8 @@ _FREE = np.array([name == "offset" for name in NAMES]) | LOGARITHM
 ONE = 4
 """How many of them one mass has, and numbers of a state of two."""
 
-STEPS = 32
-"""Of a sample in which a side turns, friction striking at each."""
+FINE = 31e-6
+"""Of the motion where a side turns, friction striking at each step [s]."""
 
 AT_ONCE = 6e-4
 """Of a sample that is gone through at once, where neither side turns [s]: a swing of 400 Hz takes four."""
@@ -54,8 +53,17 @@ SKIPPED = 100
 SMALL = 1e-4
 """Part of each number by which slopes are taken."""
 
+LIVELY = 5e-3
+"""In which a force has to change for what swings to be seen [s]."""
+
+LEAST = 1e-9
+"""Of masses and stiffness [kg, N/m; kg·m², N·m/rad]."""
+
 OUTLYING = 4.0
 """Standard deviations beyond which a surprise counts as one of so many."""
+
+DOUBLINGS = 12
+"""Of the samples that an observer has seen."""
 
 BLOCKS = 80
 """Stretches of the log whose scatter is the measure of uncertainty: longer than any swing."""
@@ -166,6 +174,8 @@ class Stretches:
     """Of the actuator, from a sample before [N; N·m]."""
     hand: tuple[Array, ...]
     """Means over each sample [N; N·m]."""
+    steps: int
+    """Of a sample in which a side turns: a power of 2."""
     late: int
     """Steps by which the actuator's force comes after its sample, less than a sample."""
     period: float
@@ -178,7 +188,13 @@ class Stretches:
         at = max((self.read[n].size - samples) // 2, 0)
         cut = slice(at, at + samples)
         read, force, hand = self.read[n][cut], self.force[n][at : at + samples + 1], self.hand[n][cut]
-        return Stretches((read,), (force,), (hand,), self.late, self.period, self.step)
+        return replace(self, read=(read,), force=(force,), hand=(hand,))
+
+    def shakes(self, friction: float) -> bool:
+        """True where the actuator's force changes, within 5 ms, by more than twice this and half of itself."""
+        whole = max(round(LIVELY / self.period), 1)
+        changes = np.concatenate([force[whole:] - force[:-whole] for force in self.force])
+        return float(np.std(changes)) > max(2 * friction, self.applied / 2)
 
     @property
     def applied(self) -> float:
@@ -203,31 +219,25 @@ class Stretches:
         size = 4 if values.size > ONE else 2
         flow = exponential(self.rates(values) * self.period)[:size, :size]
         odd = self.applied * loose * self.period / (self.step / np.sqrt(12))
-        unknown = np.diag([0.0, odd / values[0], 0.0, odd / values[-5 % values.size]][:size]) ** 2
-        scale = np.diag([1.0, 1 / self.period, 1.0, 1 / self.period][:size])
-        back = np.linalg.inv(scale)
-        sees = np.eye(size)[:, :1]
-        spread = solve_discrete_are(
-            (back @ flow @ scale).T, sees, back @ unknown @ back + 1e-9 * np.eye(size), np.eye(1)
-        )
+        scale = np.array([1.0, 1 / self.period, 1.0, 1 / self.period])[:size]
+        unknown = np.array([each for m in values[::ONE][: size // 2] for each in (0.0, odd / m)]) / scale
+        spread = settled(flow / scale[:, None] * scale, np.diag(unknown**2))
         gain = np.zeros(4)
-        gain[:size] = scale @ spread[:, 0] / (spread[0, 0] + 1)
+        gain[:size] = scale * spread[:, 0] / (spread[0, 0] + 1)
         return gain, float(spread[0, 0] + 1)
 
     def left(self, values: Array, gain: Array) -> Array:
         """What is not foreseen."""
         rates = self.rates(values)
-        strikes = -np.array([rates[1, 6], rates[3, 7]]) * self.period / STEPS
-        parts = next(n for n in (1, 2, 4, 8, 16) if self.period / n <= AT_ONCE or n == STEPS)
-        flow = exponential(rates * self.period / STEPS)
-        whole, two, kept = np.linalg.matrix_power(flow, STEPS // parts), values.size > ONE, []
+        strikes = -np.array([rates[1, 6], rates[3, 7]]) * self.period / self.steps
+        parts = min(power_of_2(self.period / AT_ONCE), self.steps)
+        flow, steps, late = exponential(rates * self.period / self.steps), self.steps // parts, self.late
+        whole, two, kept = np.linalg.matrix_power(flow, steps), values.size > ONE, []
         for read, force, hand in zip(self.read, self.force, self.hand, strict=True):
             found, speed = np.empty(read.size), (read[8] - read[0]) / (8 * self.period)
             begin = np.array([read[0], speed, read[0] if two else 0.0, speed if two else 1.0])
             pushed = force + values[ONE - 1]
-            _follow(
-                whole, flow, strikes, gain, pushed, hand, self.late, parts, STEPS // parts, read, begin, found
-            )
+            _follow(whole, flow, strikes, gain, pushed, hand, late, parts, steps, read, begin, found)
             kept.append(found[SKIPPED:])
         return np.concatenate(kept)
 
@@ -271,6 +281,21 @@ class Stretches:
         return Fit(values, left, np.stack(columns, axis=1) * inside[:, None], share), gain, far
 
 
+def settled(flow: Array, unknown: Array) -> Array:
+    """What Kalman's filter of a first number, read with a variance of 1, does not know before a reading, in the
+    end: Riccati's equation by doubling (Anderson 1978)."""
+    one = np.eye(len(flow))
+    back, sees, spread = flow.T, np.outer(one[0], one[0]), unknown
+    for _ in range(DOUBLINGS):
+        less = np.linalg.inv(one + sees @ spread)
+        back, sees, spread = (
+            back @ less @ back,
+            sees + back @ less @ sees @ back.T,
+            spread + back.T @ spread @ less @ back,
+        )
+    return spread
+
+
 def exponential(matrix: Array) -> Array:
     """Of a small matrix, by its series and squares: that of scipy takes a hundred times as long."""
     halvings = max(0, int(np.ceil(np.log2(np.abs(matrix).sum(axis=1).max() + 1e-300))) + 2)
@@ -286,7 +311,7 @@ def exponential(matrix: Array) -> Array:
 def stepped(values: Array, step: Array) -> Array:
     """Other numbers, none below its end."""
     chosen = LOGARITHM[: values.size]
-    grown = values * np.exp(np.clip(np.where(chosen, step, 0.0), -1, 1))
+    grown = np.maximum(values * np.exp(np.clip(np.where(chosen, step, 0.0), -1, 1)), LEAST)
     other = np.where(_FREE[: values.size], values + step, np.maximum(values + step, 0.0))
     found: Array = np.where(chosen, grown, other)
     return found
@@ -294,7 +319,8 @@ def stepped(values: Array, step: Array) -> Array:
 
 def stretches(log: Log, delay: float, most: int) -> Stretches:
     """The log as an observer sees it, until there are so many samples; the delay is in samples."""
-    whole, late = divmod(round(delay * STEPS), STEPS)
+    steps = power_of_2(log.sample_period / FINE)
+    whole, late = divmod(round(delay * steps), steps)
     read: list[Array] = []
     force: list[Array] = []
     hand: list[Array] = []
@@ -308,4 +334,10 @@ def stretches(log: Log, delay: float, most: int) -> Stretches:
         hand.append(np.ascontiguousarray((h[whole + 1 : -1] + h[whole + 2 :]) / 2))
         if sum(each.size for each in read) >= most:
             break
-    return Stretches(tuple(read), tuple(force), tuple(hand), late, log.sample_period, log.resolution or 1e-7)
+    step = log.resolution or 1e-7
+    return Stretches(tuple(read), tuple(force), tuple(hand), steps, late, log.sample_period, step)
+
+
+def power_of_2(least: float) -> int:
+    """The next one [1]."""
+    return 2 ** max(ceil(log2(least)), 0)

@@ -21,30 +21,51 @@ from scipy.special import chdtri
 
 from zwidth.data.identification.device.choice import SURE
 from zwidth.data.identification.device.estimate import Estimate, student, unit_of
-from zwidth.data.identification.device.observer import BLOCKS, LOGARITHM, NAMES, ONE, Fit, Stretches, stretches
+from zwidth.data.identification.device.observer import (
+    BLOCKS,
+    LOGARITHM,
+    NAMES,
+    ONE,
+    Fit,
+    Stretches,
+    stretches,
+)
 from zwidth.data.logs import Log
 from zwidth.native.compiled import Array
 
 _LIKE = {name: name.removeprefix("handle_") for name in NAMES} | {"inside": "damping"}
 """Whose unit is meant."""
 
-MOST, FEW = 60_000, 4_000
+MOST, FEW = 60_000, 3_000
 """Samples that are used, and on which starts are compared."""
 
 FEWEST = 2_000
 """Samples below which nothing is concluded."""
 
-LOOSE = 0.3
+LOOSE = 0.03
 """Of the observer by which starts are compared."""
 
 TIGHTER = (0.1, 0.03, 0.01)
 """Of the observers of the best starts, one after the other."""
 
-STARTS = tuple(20.0 * 2 ** (step / 3) for step in range(17))
+ROUNDS = 8
+"""Of Gauss and Newton at most, with each of them."""
+
+STARTS = tuple(20.0 * 2 ** (step / 2) for step in range(11))
 """Frequencies at which the two may swing against each other [Hz]."""
+
+DAMPED, KEPT = 0.1, 5
+"""Twice the ratio to critical damping of that swing, and how many of the starts are gone on from."""
+
+ALIKE = 0.1
+"""Part by which masses or stiffness of two starts that both are kept differ at least."""
 
 SHARES = (0.5, 0.1)
 """Of the mass, what may be behind the cable."""
+
+PART = 0.5
+"""Of what the observer before the last finds otherwise, that is taken for the error of the method: half of it is
+chance."""
 
 EXPLAINED = 1.2
 """Times the surprise expected of the encoder's steps that may be left."""
@@ -92,22 +113,32 @@ class TwoMasses:
         return sqrt(self.between["stiffness"].value * (1 / one + 1 / other)) / (2 * pi)
 
 
+def seen_to_swing(log: Log, one: Mapping[str, Estimate], delay: float) -> bool:
+    """True where the log would show what swings: the actuator shakes, nobody at the handle."""
+    if log.channels != ("actuator_force",):
+        return False
+    seen = stretches(log, delay, MOST)
+    enough = sum(read.size for read in seen.read) >= FEWEST
+    return enough and seen.shakes(one["coulomb_friction"].value)
+
+
 def two_masses(log: Log, one: Mapping[str, Estimate], delay: float) -> TwoMasses | None:
     """Both sides, where a log surely shows two: of the actuator's force alone, nobody at the handle.
 
     `one` has mass, damping and Coulomb friction of one mass; the delay is in samples.
     """
     seen = stretches(log, delay, MOST)
-    if sum(read.size for read in seen.read) < FEWEST:
-        return None
     alone = _tightened(seen, np.array([*(max(one[name].value, 1e-6) for name in NAMES[: ONE - 1]), 0.0]))
-    two = min((_tightened(seen, start) for start in _starts(seen, alone.values)), key=lambda fit: fit.cost)
+    two = _tightened(seen, *_starts(seen, alone.values))
     if not _surely_less(two, alone):
         return None
     errors = two.errors * np.where(LOGARITHM, two.values, 1.0)
+    shifts = PART * np.abs(two.values - seen.fit(two.values, TIGHTER[-2], ROUNDS).values)
     found = {
-        name: Estimate(float(value), float(error), 0.0, BLOCKS - len(NAMES), unit_of(_LIKE[name], log.motion))
-        for name, value, error in zip(NAMES, two.values, errors, strict=True)
+        name: Estimate(
+            float(value), float(error), float(shift), BLOCKS - len(NAMES), unit_of(_LIKE[name], log.motion)
+        )
+        for name, value, error, shift in zip(NAMES, two.values, errors, shifts, strict=True)
         if name != "offset"
     }
     motor = {name: found.pop(name) for name in NAMES[: ONE - 1]}
@@ -126,18 +157,21 @@ def _starts(seen: Stretches, alone: Array) -> list[Array]:
         for share in SHARES:
             one, other = (1 - share) * m, share * m
             k = (2 * pi * frequency) ** 2 * one * other / m
-            tried.append(
-                few.fit(np.array([one, b / 2, f / 2, offset, other, b / 2, f / 2, k, b / 4]), LOOSE, 4)
-            )
-    tried.sort(key=lambda fit: fit.cost)
-    return [fit.values for fit in tried[:4]]
+            c = DAMPED * 2 * pi * frequency * one * other / m
+            tried.append(few.fit(np.array([one, b / 2, f / 2, offset, other, b / 2, f / 2, k, c]), LOOSE, 5))
+    kept: list[Array] = []
+    for fit in sorted(tried, key=lambda fit: fit.cost):
+        if all(abs(np.log(fit.values[[0, 4, 7]] / each[[0, 4, 7]])).max() > ALIKE for each in kept):
+            kept.append(fit.values)
+    return kept[:KEPT]
 
 
-def _tightened(seen: Stretches, values: Array) -> Fit:
+def _tightened(seen: Stretches, *starts: Array) -> Fit:
+    """The best of these, each observer but half as many as the one before."""
     for loose in TIGHTER:
-        fit = seen.fit(values, loose, 12)
-        values = fit.values
-    return fit
+        found = sorted((seen.fit(values, loose, ROUNDS) for values in starts), key=lambda fit: fit.cost)
+        starts = tuple(fit.values for fit in found[: (len(starts) + 1) // 2])
+    return found[0]
 
 
 def _surely_less(two: Fit, alone: Fit) -> bool:
