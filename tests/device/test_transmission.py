@@ -119,7 +119,6 @@ REFUSED = {
     "curve": lambda d: zw.plots.worst_case(d, 100),
     "doctor": lambda d: zw.servo.doctor(d, duration=60, progress=lambda *_: None),
     "tissue": lambda d: zw.tissue.AdaptiveSolid(d, (100, 100, 1)),
-    "diagnose": lambda d: zw.diagnose(zw.samples.path("shaking.csv"), d.replace(motion="rotary")),
     "finger": lambda d: zw.identification.identify_finger(PRESSED, d),
     "explorer": lambda d: State.of(d, WALL),
     "bounding": lambda d: zw.formulas.check_bounding(d, zw.render(WALL, zw.rendering.ForceBounding())),
