@@ -104,3 +104,11 @@ def test_what_one_body_would_not_bear_either_is_sampling():
     found = zw.diagnose(forces_of(knocked(CAPSTAN, 450, 1.5), *BOTH), CAPSTAN)
     assert found.cause == "sampling"
     assert found.change.to < 120
+
+
+def test_told_as_one_piece_it_is_a_structure_and_what_to_record_is_said():
+    stiff = CAPSTAN.replace(transmission=CABLE.replace(stiffness=4263.7))
+    found = zw.diagnose(forces_of(knocked(stiff, 276), *BOTH), IN_ONE)
+    assert found.cause == "structural resonance"
+    assert "nobody at the handle, and identify both sides" in found.record[0]
+    assert found.change is None

@@ -174,7 +174,8 @@ def _wanted(
     if cause is not None:
         inside = cause in ("delay", "drive damping", "actuator limit")
         unseen = seen.recorded == "command" or (seen.recorded == "motor" and cause == "drive damping")
-        behind = [CAUSES[cause].record] if inside and unseen else []
+        one = cause == STRUCTURE and (device is None or device.transmission is None)
+        behind = [CAUSES[cause].record] if one or (inside and unseen) else []
         return behind if device is not None else [*behind, _DEVICE]
     wanted = [CAUSES["delay"].record] if len(seen.roles) < 2 else []
     if seen.stated is None and not follows(seen):
