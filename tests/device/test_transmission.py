@@ -111,9 +111,6 @@ REFUSED = {
     "picture": lambda d: zw.plots.plane(d, 100),
     "curve": lambda d: zw.plots.worst_case(d, 100),
     "tissue": lambda d: zw.tissue.AdaptiveSolid(d, (100, 100, 1)),
-    "diagnose": lambda d: zw.diagnose(
-        zw.samples.path("shaking.csv"), d.replace(motion="rotary", transmission=zw.Transmission(stiffness=1))
-    ),
     "finger": lambda d: zw.identification.identify_finger(PRESSED, d),
     "bounding": lambda d: zw.formulas.check_bounding(d, zw.render(WALL, zw.rendering.ForceBounding())),
 }

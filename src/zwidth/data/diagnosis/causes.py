@@ -215,7 +215,7 @@ def _drive_unseen(seen: Evidence) -> Iterator[str]:
         )
     else:
         yield _moves(seen)
-        yield "so something behind the command pushes with it, as a damper inside the drive does that is late"
+        yield "so something pushes with it: a damper inside the drive that is late, or the spring of a cable"
 
 
 def _limit_unseen(seen: Evidence) -> Iterator[str]:
@@ -394,7 +394,8 @@ CAUSES: Mapping[str, Cause] = {
             "something springy between motor, sensor and handle swings: it is no rigid device",
             lambda s: s.known.mass is not None or s.apparent_mass < 0 or s.energy < 0,
             _structure,
-            "a tap on the handle with the motor off: does it ring at this frequency?",
+            "a tap on the handle with the motor off: does it ring at this frequency? Then a cable, a belt or "
+            "a gear may give way: shake the motor, nobody at the handle, and identify both sides from that",
         ),
     )
 }

@@ -167,6 +167,8 @@ class _Loop:
         """The verdict by closed forms; None where there is none."""
         try:
             device, law = self.built(**changes)
+            if device.transmission is not None:
+                return check(device, law)
             covered = covering(device, law) if laws_of(law) else (device, law)
             return None if covered is None else check_by_closed_forms(*covered)
         except InputError:  # such as a delay of more samples than a proof has room for
@@ -176,7 +178,8 @@ class _Loop:
 def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
     """The change that takes a cause away; None where no single number of the loop does, or none is proved."""
     unseen = (cause == "delay" and not seen.sees_delay) or (cause == "actuator limit" and seen.drive is None)
-    if seen.law is None or cause not in _PARAMETERS or unseen:
+    rigid = cause == "structural resonance" and device.transmission is None
+    if seen.law is None or cause not in _PARAMETERS or unseen or rigid:
         return None
     loop = _loop(seen, device, cause)
     for key in _PARAMETERS[cause]:
@@ -193,7 +196,8 @@ def change_for(cause: str, seen: Evidence, device: Device) -> Change | None:
         built = loop.built(**{key: to})
         name, unit = _NAMES[key]
         said = seen.unit(unit) if unit != "s" else "s"
-        verdict = check(*built) if laws_of(built[1]) else check_by_closed_forms(*built)
+        decide = check if laws_of(built[1]) or device.transmission is not None else check_by_closed_forms
+        verdict = decide(*built)
         return Change(
             parameter=key,
             current=current,
@@ -215,6 +219,7 @@ _PARAMETERS = {
     "drive damping": ("drive_damping",),
     "friction compensation": ("compensation",),
     "actuator limit": ("stiffness",),
+    "structural resonance": ("stiffness",),
 }
 """What to change, the first that helps."""
 
@@ -226,6 +231,12 @@ _NAMES = {
     "compensation": ("compensated Coulomb friction", "coulomb_friction"),
 }
 """Each in words, and whose unit it has."""
+
+
+def law_of(seen: Evidence, device: Device) -> Environment:
+    """Spring and damper as they were found, or stated, what compensates friction left out."""
+    loop = _loop(seen, device, "")
+    return loop._law(loop.__dict__)
 
 
 def _loop(seen: Evidence, device: Device, cause: str) -> _Loop:

@@ -34,7 +34,7 @@ from zwidth.data.diagnosis.law import Law
 from zwidth.data.diagnosis.recording import Recording
 from zwidth.data.diagnosis.stated import Stated, compare
 from zwidth.data.diagnosis.vibration import Vibration, phasors
-from zwidth.model.device import Device, require_rigid
+from zwidth.model.device import Device, in_one
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import middle
@@ -66,10 +66,10 @@ class Known:
 
     @classmethod
     def of(cls, device: Device | None) -> Known:
-        """The middle of each number of a device."""
+        """The middle of each number of a device, of motor and handle together."""
         if device is None:
             return cls()
-        require_rigid(device, "a diagnosis")
+        device = in_one(device)
         return cls(
             mass=middle(device.mass),
             damping=middle(device.damping),

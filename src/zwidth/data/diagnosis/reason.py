@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from zwidth.data.diagnosis.cable import STRUCTURE, judged, move_apart
 from zwidth.data.diagnosis.causes import CAUSES, follows, is_named, likelihoods
 from zwidth.data.diagnosis.change import PASSIVE, Change, change_for
 from zwidth.data.diagnosis.drive import Drive
@@ -124,8 +125,17 @@ def _still(taken: Recording) -> Diagnosis:
 def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis:
     likely = dict(sorted(likelihoods(seen).items(), key=lambda item: -item[1]))
     first, p = next(iter(likely.items()))
+    shown_by: tuple[str, ...] = ()
+    if device is not None and move_apart(seen, device):
+        seen = replace(seen, moves_as=None)  # that of one body
+        cause, shown_by = judged(seen, device)
+        first, p = cause or first, 1.0
+        likely = {first: p} if cause else likely
+    else:
+        piece = device is None or device.transmission is None or first != STRUCTURE
+        cause = first if piece and is_named(first, p, seen) else None
     against = doubt(first, seen)
-    cause = first if against is None and is_named(first, p, seen) else None
+    cause = None if against is not None else cause
     change = change_for(cause, seen, device) if cause is not None and device is not None else None
     return Diagnosis(
         cause=cause,
@@ -134,7 +144,7 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
         frequency=seen.vibration.frequency,
         frequency_spread=seen.vibration.frequency_spread,
         energy_per_cycle=seen.energy,
-        evidence=tuple(CAUSES[cause].evidence(seen)) if cause is not None else (),
+        evidence=() if cause is None else shown_by or tuple(CAUSES[cause].evidence(seen)),
         change=change,
         record=_record(cause, likely, seen, device, change, against),
         seen=seen,
@@ -164,7 +174,8 @@ def _wanted(
     if cause is not None:
         inside = cause in ("delay", "drive damping", "actuator limit")
         unseen = seen.recorded == "command" or (seen.recorded == "motor" and cause == "drive damping")
-        behind = [CAUSES[cause].record] if inside and unseen else []
+        one = cause == STRUCTURE and (device is None or device.transmission is None)
+        behind = [CAUSES[cause].record] if one or (inside and unseen) else []
         return behind if device is not None else [*behind, _DEVICE]
     wanted = [CAUSES["delay"].record] if len(seen.roles) < 2 else []
     if seen.stated is None and not follows(seen):

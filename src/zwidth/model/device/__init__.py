@@ -2,7 +2,7 @@
 
 from zwidth.model.device import catalogue
 from zwidth.model.device.amplifier import ActuatorCheck, actuator_checks
-from zwidth.model.device.device import Device, require_rigid
+from zwidth.model.device.device import Device, in_one, require_rigid
 from zwidth.model.device.friction import FrictionCurve, FrictionModel
 from zwidth.model.device.transmission import Transmission
 
@@ -14,5 +14,6 @@ __all__ = [
     "Transmission",
     "actuator_checks",
     "catalogue",
+    "in_one",
     "require_rigid",
 ]

@@ -17,7 +17,7 @@ from typing import Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.model.device.transmission import Transmission
-from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.exact import Exact, Interval, ends, middle
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import (
     Given,
@@ -273,6 +273,16 @@ class Device(Parametric):
                 rows.append((own.quantity.symbol, f"transmission: {in_words(k)}", told))
             rows.append(("", "encoder at the", self.transmission.encoder))
         return Table(caption=self.name, rows=rows).html
+
+
+def in_one(device: Device) -> Device:
+    """Of each number the middle, and of both sides of a transmission the sum: what a hand moves."""
+    own = {name: middle(value) for name, value in device.parameters().items() if isinstance(value, Interval)}
+    behind = {} if device.transmission is None else device.transmission.parameters()
+    for name in _OF_A_BODY:
+        if f"handle_{name}" in behind and (motor := middle(getattr(device, name))) is not None:
+            own[name] = motor + (middle(behind[f"handle_{name}"]) or 0.0)
+    return device.motor_side.replace(**own)
 
 
 def require_rigid(device: Device, what: str) -> None:

@@ -26,9 +26,9 @@ from zwidth.data.identification.device.identify import Identified
 from zwidth.data.identification.device.moments import SECONDS
 from zwidth.data.identification.device.two_masses import MOST
 from zwidth.errors import InputError
-from zwidth.model.device.device import Device
+from zwidth.model.device.device import Device, in_one
 from zwidth.native.compiled import Array
-from zwidth.quantity.exact import Interval, ends, middle
+from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown, told_quantity
 
 RUN = 30.0
@@ -240,7 +240,7 @@ def plan_identification(
         If a number is outside its bound, or the guess lacks one.
     """
     whole = guess.device(None) if isinstance(guess, Identified) else guess
-    device = _as_one(whole)
+    device = in_one(whole)
     if force_noise is None:
         if not isinstance(guess, Identified):
             raise InputError("force_noise is needed with a guessed device: σ of the load cell per sample [N]")
@@ -274,16 +274,6 @@ def plan_identification(
         speed=speed,
         apart=None if whole.transmission is None else whole,
     )
-
-
-def _as_one(device: Device) -> Device:
-    """Of each number the middle, and of both sides of a transmission the sum: what a hand moves."""
-    sums = {k: middle(v) for k, v in device.parameters().items() if isinstance(v, Interval)}
-    behind = {} if device.transmission is None else device.transmission.parameters()
-    for name in PARAMETERS:
-        if f"handle_{name}" in behind and (own := middle(getattr(device, name))) is not None:
-            sums[name] = own + (middle(behind[f"handle_{name}"]) or 0.0)
-    return device.motor_side.replace(**sums)
 
 
 def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
