@@ -51,7 +51,7 @@ class Road:
         self.own, self.inside, self.other = (
             b / t for b in (self.loop.damping, elastic.damping, elastic.handle_damping)
         )
-        self.bits = 400 + 8 * int(elastic.turn) + 16 * self.loop.degree
+        self.bits = 800 + 8 * int(elastic.turn) + 16 * self.loop.degree
 
     def _rates(self) -> list[list[Fraction]]:
         """Of the six, the sum of p₂ and the held force, of a hand that pays least.

@@ -170,6 +170,9 @@ def test_a_rotary_file_is_in_its_units():
         ('"12 N/mm"', "0", "transmission.stiffness must be > 0 N/m, got 0"),
         ('"12 N/mm"', '"12 mm"', "transmission.stiffness is in N/m"),
         ('"handle"', '"hand"', 'transmission.encoder: there is no "hand"'),
+        ("handle_mass =", "handle_inertia =", "a transmission has no handle_inertia: of a rotary device "),
+        ("encoder =", "backlash =", "leave stiffness, damping and handle_damping out"),
+        ("encoder =", "ratio =", "N² times its inertia and damping"),
         ("[device.transmission]", "transmission = 3\n[environment]", "transmission is a table"),
         ("[device.transmission]", "[device.transmision]", 'did you mean "transmission"'),
     ],
@@ -178,7 +181,8 @@ def test_what_a_file_cannot_mean(old, new, said):
     """Each is refused by its name, and where it stands."""
     with pytest.raises(zw.InputError) as error:
         parsed((FILE if "[environment]" in new else LOOP).replace(old, new))
-    assert str(error.value).startswith("specification: [device]: ")
+    table = "[device.transmission]" if "[device" not in old else "[device]"
+    assert str(error.value).startswith(f"specification: {table}: ")
     assert said in str(error.value)
 
 
@@ -202,6 +206,8 @@ def test_options_take_the_place_of_the_file(err):
     said = err("check it.toml --stiffness 100 --transmission.encoder hand")
     assert '--transmission.encoder: there is no "hand"' in said
     assert "--transmission.stiffness?" in err("check it.toml --transmission.stifness 1 --stiffness 1")
+    said = err("check it.toml --stiffness 100 --transmission.backlash '0.1 mm'")
+    assert "there is no option --transmission.backlash: of a gear with play" in said
     bare = "check --damping 1 --rate 1000 --stiffness 1 --transmission.stiffness '1 N*m/rad'"
     assert "transmission.stiffness is in N/m" in err(bare)
 

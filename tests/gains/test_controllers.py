@@ -147,6 +147,18 @@ def test_a_gear_that_gives_way_is_as_any_cable(tmp_path, more):
     assert any("motors' side" in note for note in found.notes)
 
 
+def test_with_the_inertia_of_the_motors_a_gear_is_decided_as_given(tmp_path):
+    """Refuted then, too; without a gear that gives way no number of the plant is an inertia."""
+    given = read_controllers(written(tmp_path, "controllers.yaml", TRAJECTORY))
+    heavy = GIVING_WAY.format("stiffness = 9000").replace("[arm]", '[arm]\ninertia = "0.1 kg*m^2"')
+    for text, outcome in ((GIVING_WAY.format("stiffness = 9000"), "undecided"), (heavy, "active")):
+        found = check_controllers(given, str(written(tmp_path, "arm.toml", text)))
+        assert {joint.verdict.scope.transmission for joint in found.joints} == {"any", "as given"}
+        assert found.outcome == outcome
+    with pytest.raises(zw.InputError, match='an arm has no "inertia"'):
+        check_controllers(given, str(written(tmp_path, "arm.toml", "[arm]\ndamping = 1\ninertia = 1")))
+
+
 def test_a_gear_that_gives_way_is_written_as_a_table(tmp_path):
     given = read_controllers(written(tmp_path, "controllers.yaml", TRAJECTORY))
     for more in ("stiffness = [1]", "stiffness = [1, 2, 3]", 'encoder = "link"', "k = 1"):

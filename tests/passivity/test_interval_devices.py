@@ -64,6 +64,23 @@ def test_the_stiffness_for_every_device(law: zw.Wall) -> None:
         assert zw.check(device, law.replace(stiffness=Exact(1.03 * limit))).outcome != "passive"
 
 
+def test_a_transmission_leaves_what_the_motor_feels() -> None:
+    """As of a device without one, with c b₂/(c + b₂) more; nothing with the encoder at the handle."""
+    bounds = {k: WIDE[k] for k in ("damping", "coulomb_friction", "delay")}
+    rigid, wall = device_in(**bounds), zw.Wall(3.0)
+
+    def over(given: zw.Transmission) -> OverRanges:
+        return said(DeviceInRange(rigid.device.replace(transmission=given), rigid.ranges), wall)
+
+    loose = over(zw.Transmission(handle_damping=5))
+    assert loose.every == said(rigid, wall).every
+    assert loose.best == said(rigid, wall).best
+    stiff = over(zw.Transmission(damping="0.1", handle_damping="0.1"))
+    more = device_in(**{**bounds, "damping": (0.063, 0.26)})
+    assert stiff.every == said(more, wall).every
+    assert over(zw.Transmission(encoder="handle")).every is None
+
+
 def test_the_number_to_measure_first() -> None:
     """The one that binds; from the value that is told on nothing else need be known, just before it is."""
     found = device_in(

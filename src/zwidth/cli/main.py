@@ -17,6 +17,7 @@ from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
 from zwidth.cli.parsing import Help, as_typed, joined
 from zwidth.errors import InputError
+from zwidth.model.device.transmission import NOT_OF_IT
 from zwidth.model.specification.table import plain, quoted, suggestion
 from zwidth.quantity.spoken import answers_as_typed
 
@@ -138,6 +139,9 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     underscored = name.replace("_", "-")
     if underscored in options:
         return f"there is no option {plain(name)}; did you mean {underscored}?"
+    inner = underscored.removeprefix("--transmission.").replace("-", "_")
+    if inner != underscored and inner in NOT_OF_IT:
+        return f"there is no option {plain(name)}: {NOT_OF_IT[inner]}"
     hint = suggestion(name, options).replace('"', "") if len(name) > 2 else "see --help"
     short = hint if hint.startswith("did") else f"see {child.prog} --help"
     return f"there is no option {plain(name)}; {short}"

@@ -78,7 +78,10 @@ def numbers_of(device: Device, operator: Operator, motor: Plant, most: int) -> A
     given |= device.parameters()
     for key in _NUMBERS:
         if key not in given:
-            raise InputError(f"{key} is unknown, and two masses are simulated: give it, or device.motor_side")
+            raise InputError(
+                f"{key} is unknown, and two masses are simulated: give it; or leave the transmission out, as "
+                "device.motor_side does"
+            )
         if isinstance(given[key], Interval):
             raise InputError(f"{key} is the interval {given[key]}; a simulated motion needs one value of it")
     own, spring, damper, mass, drag, dry = (float(given[key]) for key in _NUMBERS)

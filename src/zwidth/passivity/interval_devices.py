@@ -25,6 +25,7 @@ from zwidth.passivity.corners import Loop, worst_corners
 from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
 from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
 from zwidth.passivity.scope import unit_key
+from zwidth.passivity.transmission import seen_at_motor
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answered, data_of, known
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -156,6 +157,10 @@ def over_ranges(found: DeviceInRange, law: Environment, verdict: Verdict) -> Ove
     )
     if not (law.has_transfer_function and law.is_certain and has_stiffness(law)):
         return said
+    if device.transmission is not None:
+        if device.transmission.encoder != "motor":
+            return said
+        device = seen_at_motor(device)
     every, best = (_proved_up_to(one, law) for one in (device, _at_end(device, keys, better=True)))
     open_still = verdict.outcome not in ("passive", "active")
     return replace(said, every=every, best=best, first=_first(device, keys, law) if open_still else None)

@@ -7,7 +7,8 @@ From a TOML file,
     coulomb_friction = [0.3, 0.3, 0.2]
     resolution = "0.1 mrad"
 
-    [arm.transmission]                          of joints that give way; the above is the motors' side then
+    [arm.transmission]                          of joints that give way; the above is the motors' side then,
+                                                and inertia may stand there, too
     stiffness = [9000, 9000, 5000]
     handle_damping = "0.2 N*m*s/rad"            of the link
 
@@ -121,7 +122,7 @@ def plant_of_file(joints: int, path: str | Path) -> Plant:
 
 
 def _rows(table: GainTable, joints: int) -> tuple[dict[str, Any], ...]:
-    known = (*KEYS, "transmission")
+    known = (*KEYS, "transmission", *(("inertia",) if "transmission" in table else ()))
     for key in table.values:
         if key not in known:
             raise InputError(f"{table.label}: an arm has no {quoted(key)}; {suggestion(key, known)}")
@@ -132,11 +133,12 @@ def _rows(table: GainTable, joints: int) -> tuple[dict[str, Any], ...]:
         if key == "transmission":
             columns[key] = [*joint_transmissions(value, table.label, joints)]
             continue
-        unit = GLOSSARY[key].rotary_unit
+        own = "mass" if key == "inertia" else key
+        unit = GLOSSARY[own].rotary_unit
         if isinstance(value, list):
-            columns[key] = table.numbers(key, unit, joints)
+            columns[own] = table.numbers(key, unit, joints)
         else:
-            columns[key] = [parse_number(value, unit, table.where(key))] * joints
+            columns[own] = [parse_number(value, unit, table.where(key))] * joints
     return tuple({key: column[n] for key, column in columns.items()} for n in range(joints))
 
 

@@ -36,6 +36,16 @@ def _q(name: str, symbol: str, like: str, meaning: str) -> Quantity:
 _FRICTION = "negative friction would itself generate energy"
 
 
+NOT_OF_IT: Mapping[str, str] = {
+    "backlash": "of a gear with play nothing behind it is counted: leave stiffness, damping and "
+    "handle_damping out, and what the friction of the motor proves alone holds for every play",
+    "ratio": "every number is the one that is seen at the handle: of a motor that turns N times as fast "
+    "write N² times its inertia and damping, N times its Coulomb friction, and 1/N of its encoder's step",
+    "handle_inertia": "of a rotary device handle_mass is its inertia, in kg*m^2",
+}
+"""What people ask of a transmission that is no key of it, and what to write."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Transmission(Parametric):
     """A spring and a damper between motor and handle, and what moves on the handle's side.

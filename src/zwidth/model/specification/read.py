@@ -177,7 +177,7 @@ def _arguments(table: Table, motion: str) -> dict[str, Any]:
     inner = table.values.get("transmission", {})
     if not isinstance(inner, dict):
         raise InputError(f"{table.label}: transmission is a table, written [device.transmission]")
-    between = Table(table.label, inner)
+    between = Table(table.label.replace("[device]", "[device.transmission]"), inner)
     for key, value in table.values.items():
         if key.startswith(BETWEEN):
             between.override(key.removeprefix(BETWEEN), value)

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.model.device.transmission import Transmission, motion_told
+from zwidth.model.device.transmission import NOT_OF_IT, Transmission, motion_told
 from zwidth.model.environment import BackwardDifference, OnePole, VelocityFilter, Window
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.model.specification.table import Table, located, quoted, suggestion
@@ -187,6 +187,8 @@ BETWEEN = "transmission."
 def transmission_of(between: Table, motion: str) -> Transmission:
     """What a table of a transmission describes, "linear", "rotary", or "" where its units say which."""
     known = parameters_of(Transmission)
+    for key in NOT_OF_IT.keys() & between.values.keys():
+        raise InputError(f"{between.where(key)}: a transmission has no {key}: {NOT_OF_IT[key]}")
     between.check_keys(known, "a transmission")
     read: dict[str, Any] = {}
     for key, value in between.values.items():
