@@ -223,7 +223,6 @@ def test_options_take_the_place_of_the_file(err):
         "compare it.toml --stiffness 100",
         "emit it.toml --stiffness 100 -o out",
         "serve it.toml --stiffness 100 --operator finger --duration 0.1",
-        "plan it.toml --force-noise 0.01 --transmission.handle-mass 1",
         "doctor it.toml --stiffness 100",
         "play it.toml --stiffness 100 -o out.html",
         "pair it.toml --stiffness 100",

@@ -294,8 +294,8 @@ def require_rigid(device: Device, what: str) -> None:
     if device.transmission is not None:
         raise InputError(
             f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
-            "them; zwidth check, limit and simulate know a transmission; here leave [device.transmission] or "
-            "--transmission out, in Python take device.motor_side"
+            "them; zwidth check, limit, simulate, plan and diagnose know one; here leave "
+            "[device.transmission] or --transmission out, in Python take device.motor_side"
         )
 
 
