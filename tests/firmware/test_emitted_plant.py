@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.loop.plant import COULOMB, POSITION, STATE_SIZE, STOPS, VELOCITY, WORK, Plant
-from zwidth.loop.two_masses import STATE_OF_TWO, WORK_OF_TWO, TwoMasses
+from zwidth.loop.two_bodies import SERIES_OF_TWO, STATE_OF_TWO, TwoMasses
 from zwidth.machine.firmware.plant import one_period, one_period_of_two, plant_module, plant_program
 from zwidth.machine.firmware.program import Program
 
@@ -88,7 +88,7 @@ def test_motor_and_handle_move_as_the_simulator_has_them(
     motor = Plant(0.03, 0.0, 0.06, 0.01, 0.015, 0.0, 0.0, lag, 0.0)
     handle = Plant(0.03, 0.01, 0.09, handle_dry, handle_dry, 300.0, 1.0, lag, 0.0)
     two, rows = TwoMasses(motor, handle, 2131.8, 0.02, 0.0, 0.0), hand_and_law("anchored", 1200, 3)
-    state, work = np.zeros(STATE_OF_TWO), np.zeros(WORK_OF_TWO)
+    state, work = np.zeros(STATE_OF_TWO), np.zeros(SERIES_OF_TWO)
     states = np.empty((len(rows), STATE_OF_TWO))
     for k, (force, push, *anchor) in enumerate(rows):
         one_period_of_two(state, work, two, force, push, *anchor, PERIOD)
@@ -97,7 +97,7 @@ def test_motor_and_handle_move_as_the_simulator_has_them(
         "two": Known(plant_program(two, PERIOD, "anchored"), rows, Ran(states, np.concatenate([state, work])))
     }
     library = compiled_c(plant_in_c(known["two"].program, "two"), tmp_path, ("-std=c99", "-O2"))
-    cells = np.zeros(STATE_OF_TWO + WORK_OF_TWO)
+    cells = np.zeros(STATE_OF_TWO + SERIES_OF_TWO)
     assert state[STOPS] > 5
     assert not differing(known, {"two": run_c(library, "two", rows, cells, STATE_OF_TWO)})
 

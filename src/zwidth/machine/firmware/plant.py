@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.loop import two_masses
+from zwidth.loop import two_bodies, two_masses
 from zwidth.loop.plant import (
     FORCE,
     GOAL,
@@ -26,7 +26,8 @@ from zwidth.loop.plant import (
     value,
 )
 from zwidth.loop.step import advance, book
-from zwidth.loop.two_masses import TwoMasses, advance_two
+from zwidth.loop.two_bodies import TwoMasses
+from zwidth.loop.two_masses import advance_two
 from zwidth.machine.firmware.c99 import C99
 from zwidth.machine.firmware.c99 import KEYWORDS as OF_C
 from zwidth.machine.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
@@ -104,7 +105,7 @@ def one_period_of_two(
     state[GOAL] = force
     if two.motor.lag == 0.0 and two.motor.slew == 0.0:
         state[FORCE] = force
-    advance_two(state, two, push, anchor, anchor_speed, period, work)
+    advance_two(state, two, push, anchor, anchor_speed, period, -1, work)
 
 
 def given_plant(*, amplified: bool) -> Plant:
@@ -141,7 +142,7 @@ def plant_program(plant: Plant | TwoMasses | None, period: float | None, hand: H
     length = Variable("real", "period") if period is None else float(period)
     given = Variable("real", "force"), Variable("real", "push"), *anchor, length
     if isinstance(plant, TwoMasses):
-        both = Cells("state", two_masses.STATE_OF_TWO), Cells("work", two_masses.WORK_OF_TWO)
+        both = Cells("state", two_bodies.STATE_OF_TWO), Cells("work", two_bodies.SERIES_OF_TWO)
         return specialised(one_period_of_two, (*both, plant, *given), _OF_TWO)
     numbers = plant or given_plant(amplified=True)
     if plant is None and hand == "free":

@@ -18,7 +18,7 @@ from zwidth.errors import InputError
 from zwidth.loop.pair.setup import prepare_pair
 from zwidth.loop.plant import Plant
 from zwidth.loop.setup import MOST_PIECES, frame_of
-from zwidth.loop.two_masses import numbers_of, packed_two
+from zwidth.loop.two_bodies import numbers_of, packed_two
 from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import law_program
 from zwidth.machine.firmware.plant import given_plant, given_two, plant_module, plant_program
