@@ -215,19 +215,9 @@ def test_options_take_the_place_of_the_file(err):
 @pytest.mark.parametrize(
     "line",
     [
-<<<<<<< HEAD
         "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1 --hands finger",
         "check it.toml --stiffness 100 --hands finger",
         "check it.toml --stiffness 100 --active-below 3",
-=======
-        "map it.toml --stiffness 0:100 --virtual-damping 0:1 --transmission.handle-mass 1",
-        "sweep it.toml --stiffness 100 --vary 'rate=1000,2000'",
-        "compare it.toml --stiffness 100",
-        "emit it.toml --stiffness 100 -o out",
-        "serve it.toml --stiffness 100 --operator finger --duration 0.1",
-        "doctor it.toml --stiffness 100",
-        "play it.toml --stiffness 100 -o out.html",
->>>>>>> diagnose
         "pair it.toml --stiffness 100",
         "links it.toml",
     ],

@@ -296,14 +296,9 @@ def require_rigid(device: Device, what: str) -> None:
     if device.transmission is not None:
         raise InputError(
             f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
-<<<<<<< HEAD
-            "them; zwidth check, limit, map, sweep, compare, simulate, serve, emit and play know it. To ask of "
-            "the motor alone leave out [device.transmission] and --transmission, in Python take "
-            "device.motor_side"
-=======
-            "them; zwidth check, limit, simulate, plan and diagnose know one; here leave "
-            "[device.transmission] or --transmission out, in Python take device.motor_side"
->>>>>>> diagnose
+            "them; zwidth check, limit, map, sweep, compare, simulate, serve, emit, play, plan, diagnose and "
+            "identify know it. To ask of the motor alone leave out [device.transmission] and --transmission, "
+            "in Python take device.motor_side"
         )
 
 
