@@ -62,6 +62,7 @@ def test_both_sides_and_the_cable_are_found(found):
     for name, true in BETWEEN.items():
         low, high = found.cable.between[name].interval(0.9999)
         assert low <= true <= high, name
+    assert not found.as_one
     assert found.cable.resonance == pytest.approx(60 * 2**0.5, rel=1e-3)
 
 
@@ -87,6 +88,7 @@ def test_the_file_has_the_cable(found, tmp_path):
 def test_one_mass_stays_one():
     one = zw.identify(shaken((2 * pi * 3000) ** 2 * 0.015))
     assert one.cable is None
+    assert not one.as_one
     assert one.device().transmission is None
 
 
@@ -94,3 +96,4 @@ def test_what_two_masses_do_not_explain_either_is_said():
     odd = zw.identify(shaken(BETWEEN["stiffness"], lambda x: 0.5 * sin(2 * pi * x / 0.004)))
     assert odd.shows("not one mass")
     assert odd.cable is None
+    assert odd.least_damping(0.99) == 0

@@ -149,7 +149,7 @@ class Regression:
 
     def error(self, name: str) -> float:
         k = self.names.index(name)
-        return float(np.sqrt(self.covariance[k, k]))
+        return float(np.sqrt(max(self.covariance[k, k], 0.0)))  # of an exact log rounding leaves less than 0
 
     def sees(self, name: str, confidence: float) -> bool:
         """True where 0 is outside a parameter's interval."""

@@ -62,7 +62,7 @@ def moves_apart(cable: TwoMasses) -> Finding:
             kind="not one mass",
             text="one mass leaves more of the readings than the encoder's steps, and so do two: the numbers "
             "are those of one, and no wall is promised. Where something gives way between motor and handle, "
-            "walls rest on the motor's side alone; to see it, shake the motor harder, with nobody at the handle",
+            "walls rest on the motor's side alone; to see it, shake the motor harder, nobody at the handle",
         )
     share = cable.damping.value / (cable.motor["damping"].value + cable.between["handle_damping"].value)
     text = (

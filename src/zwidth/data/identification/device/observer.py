@@ -1,11 +1,11 @@
 """One mass or two fitted to a log by what an observer does not foresee of it.
 
-    e_i = read_i − x₁,   (x₁, v₁, x₂, v₂) += K e_i,   and on to the next sample by the law of motion, friction and all
+    e_i = read_i − x₁,   (x₁, v₁, x₂, v₂) += K e_i,   and on to the next sample by the law of motion
 
-K is Kalman's, of steps of the encoder and of a force on both sides that nobody knows, `loose` times what is
-applied.  The sum of e² is least at the true numbers, whatever K is (prediction errors; Ljung 1999).  A loose
-observer forgets within a few samples: no start is a cycle of the swing off, and a motion that sticks, or was not
-found, costs little.  A tight one knows more.
+K is Kalman's, of steps of the encoder and of a force on both sides that nobody knows, `loose` times what
+is applied.  The sum of e² is least near the true numbers, whatever K is (prediction errors; Ljung 1999).  A
+loose observer forgets within a few samples: no start is a cycle of the swing off, and a motion that sticks
+costs little.  A tight one knows more.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def _follow(
     begin: Array,
     found: Array,
 ) -> None:
-    """What the observer does not foresee: a part of a sample at once where neither side turns, else in steps."""
+    """What is not foreseen: a part of a sample at once where neither side turns, else in steps."""
     x, v, y, u = begin[0], begin[1], begin[2], begin[3]
     for i in range(read.shape[0]):
         e = read[i] - x
@@ -191,7 +191,7 @@ class Stretches:
         return replace(self, read=(read,), force=(force,), hand=(hand,))
 
     def shakes(self, friction: float) -> bool:
-        """True where the actuator's force changes, within 5 ms, by more than twice this and half of itself."""
+        """True where the actuator's force changes within 5 ms by more than twice this and half of itself."""
         whole = max(round(LIVELY / self.period), 1)
         changes = np.concatenate([force[whole:] - force[:-whole] for force in self.force])
         return float(np.std(changes)) > max(2 * friction, self.applied / 2)
@@ -282,8 +282,8 @@ class Stretches:
 
 
 def settled(flow: Array, unknown: Array) -> Array:
-    """What Kalman's filter of a first number, read with a variance of 1, does not know before a reading, in the
-    end: Riccati's equation by doubling (Anderson 1978)."""
+    """Variances before a reading, in the end, of Kalman's filter that reads the first number with a variance
+    of 1: Riccati's equation by doubling (Anderson 1978)."""
     one = np.eye(len(flow))
     back, sees, spread = flow.T, np.outer(one[0], one[0]), unknown
     for _ in range(DOUBLINGS):
@@ -340,4 +340,4 @@ def stretches(log: Log, delay: float, most: int) -> Stretches:
 
 def power_of_2(least: float) -> int:
     """The next one [1]."""
-    return 2 ** max(ceil(log2(least)), 0)
+    return 1 << max(ceil(log2(least)), 0)

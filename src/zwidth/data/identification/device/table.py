@@ -49,7 +49,7 @@ NAMES = {
 
 BOTH_SIDES = (
     "m, b and f_c are the sum of both sides of a cable, belt or gear; where the motor swings on it only its "
-    "own side pays; the motor that shakes, nobody at the handle, shows it"
+    "own side pays (a shaken log shows it)"
 )
 """What is taken for granted of every device: motor, encoder and hand move as one."""
 

@@ -3,9 +3,9 @@
     m₁ ẍ₁ = −f_a − b₁ ẋ₁ − f_c1 sgn ẋ₁ + k (x₂ − x₁) + c (ẋ₂ − ẋ₁)
     m₂ ẍ₂ =       − b₂ ẋ₂ − f_c2 sgn ẋ₂ − k (x₂ − x₁) − c (ẋ₂ − ẋ₁)
 
-One mass and two are fitted to the same log (`observer`).  What both leave of the encoder's readings is compared.
-Only the actuator tells the two sides apart: from the hand's force at the handle to the motor's position the path
-is the same with the two sides exchanged (reciprocity),
+One mass and two are fitted to the same log (`observer`), and what both leave of the encoder's readings is
+compared.  Only the actuator tells the two sides apart: from the hand's force at the handle to the motor's
+position the path is the same with the two sides exchanged (reciprocity),
 
     x₁ / f_h = (c s + k) / ((m₁ s² + b₁ s)(m₂ s² + b₂ s) + (c s + k)((m₁ + m₂) s² + (b₁ + b₂) s)) .
 """
@@ -64,8 +64,7 @@ SHARES = (0.5, 0.1)
 """Of the mass, what may be behind the cable."""
 
 PART = 0.5
-"""Of what the observer before the last finds otherwise, that is taken for the error of the method: half of it is
-chance."""
+"""Of what the observer before the last finds otherwise, that is taken for the error of the method."""
 
 EXPLAINED = 1.2
 """Times the surprise expected of the encoder's steps that may be left."""
