@@ -93,7 +93,8 @@ class Loops:
         while True:
             self.device = plant(rng)
             self.law = law(rng, float(self.device.sample_period))
-            if self.elastic(Fraction(1)).turn < STIFFEST:
+            found = elastic_of(self.device, self.at(Fraction(1)))
+            if found is not None and found.turn < STIFFEST:
                 break
         loop = self.elastic(Fraction(1)).loop
         self.start = float((loop.damping + self.device.transmission.handle_damping.fraction) / loop.period)
