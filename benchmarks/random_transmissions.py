@@ -91,7 +91,8 @@ class Loops:
         while True:
             self.device = plant(rng)
             self.law = law(rng, float(self.device.sample_period))
-            if elastic_of(self.device, self.at(Fraction(1))):  # None of one too stiff for its rate
+            found = elastic_of(self.device, self.at(Fraction(1)))
+            if found is not None and found.turn < STIFFEST:
                 break
         loop = self.elastic(Fraction(1)).loop
         self.start = float((loop.damping + self.device.transmission.handle_damping.fraction) / loop.period)
