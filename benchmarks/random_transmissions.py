@@ -32,6 +32,8 @@ from transmission_lifted import Lifted, Plant
 
 NEAR, CLEAR = Fraction(1, 10**6), Fraction(1, 1000)
 EVERY = 8
+STIFFEST = 400
+"""Radians of the motor in a sample, beyond which the checker's work is too much."""
 LARGEST_TURN = 30
 """Beyond it a period would have to be cut into too many pieces."""
 

@@ -18,26 +18,26 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 
 LINES = {
     "beside the rooms": 929,
-    "checker": 10404,
-    "cli": 10446,
-    "data": 22323,
+    "checker": 10401,
+    "cli": 10542,
+    "data": 22628,
     "links": 2317,
-    "loop": 6595,
-    "machine": 17455,
-    "model": 17557,
+    "loop": 6987,
+    "machine": 17601,
+    "model": 17679,
     "native": 1658,
-    "passivity": 27316,
-    "quantity": 2056,
-    "show": 8870,
-    "study": 5485,
+    "passivity": 27785,
+    "quantity": 2061,
+    "show": 9008,
+    "study": 5628,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 133411
-PHYSICS = 63928
+IN_ALL = 135224
+PHYSICS = 64913
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 660, 25
+FILES_IN_ALL, IN_A_FOLDER = 669, 25
 
 ALONE = 134
 """Files that one other file alone imports."""

@@ -3,7 +3,7 @@
 T = 1.  Without a law the criterion is q(x) = det(cosh √K − x); it is (cosh √(2/7) − x)² with m = k = 1,
 c = 3, b₁ = 0 and b₂ = 4/15, whose n = 49/15 (λ + 2/7)².  With a law it has no closed form: its coefficients,
 and the stiffness at which it is 0 at a frequency, are those of sums over frequencies, added up one by one.
-At rest the hand feels k H/(k + H).
+At rest the hand feels k H/(k + H).  Where the held loop begins to swing is found by exponentials of matrices.
 """
 
 from __future__ import annotations
@@ -142,6 +142,15 @@ CASES = [
         contact="kept",
     ),
     accepted("no surface", put(ABOVE, {"loop.unilateral": False}), contact="both sides"),
+    *edge(
+        "held still, α = 3/8",
+        *(
+            violation(([Fraction("1.3779977587625224") * (1 + move)], [1]), cable(), UNSTABLE, delay_s="3/8")
+            for move in (TINY, -TINY)
+        ),
+        "not shown to be unstable",
+        shows="active",
+    ),
     accepted("held still it swings", violation(([30], [1]), cable(), UNSTABLE), "the loop is unstable"),
     refused("held still it is at rest", violation(([2], [1]), cable(), UNSTABLE), "not shown to be unstable"),
     accepted(
