@@ -109,3 +109,12 @@ def test_not_covered_is_not_none(run):
     assert region.pop("scope")["contact"] == "made and broken"
     assert region == {"largest_stiffness_N_m_per_rad": None, "cells": 0, "covered": False}
     assert document["spring_limit_N_m_per_rad"] == pytest.approx(28.3282, rel=1e-5)
+
+
+def test_a_handle_whose_mass_is_unknown_is_left_out_of_free_air(run, tmp_path):
+    """It plays no part in the map: no number stands for it, in words, picture or JSON."""
+    line = "map --damping 0.06 --mass 0.03 --rate '1 kHz' --transmission.stiffness '30 N/mm' "
+    line += "--transmission.handle-damping 0.09 --stiffness 0:200 --virtual-damping 0:0.1 --cells 8x8"
+    assert "free air: 0.15 N·s/m, 0 N" in run(f"{line} --plot map.svg").out
+    assert "Felt in free air: 0.15 N·s/m" in (tmp_path / "map.svg").read_text(encoding="utf-8")
+    assert "free_mass_kg" not in run(f"{line} --json").out

@@ -10,6 +10,8 @@ series of its velocity passes 0.  A handle whose motion is prescribed is a body 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import (
     COULOMB,
@@ -77,9 +79,11 @@ def advance_two(
         ending = reach <= left
         if ending:
             left = reach
-        if ending or elapsed > 0.0:
-            place = -1
-        used = _stretch(state, two, force, anchor + speed * elapsed, speed, ramp, left, place, work)
+        used = 0.0
+        if place >= 0 and elapsed == ramp == lag == 0.0:
+            used = _stride(state, two, force, anchor, speed, left, place, work)
+        if used == 0.0:
+            used = _stretch(state, two, force, anchor + speed * elapsed, speed, ramp, left, work)
         if lag > 0.0:
             state[FORCE] = state[GOAL] + (state[FORCE] - state[GOAL]) * exp(-used / lag)
         elif ramp != 0.0:
@@ -108,19 +112,17 @@ def _net(external: float, side: float, velocity: float, body: Plant) -> float:
     return external - side * body.coulomb
 
 
+class _Begun(NamedTuple):
+    """A stretch as it begins: the bodies, the way to the anchor, the twist, what fades of the force."""
+
+    start: Start
+    slack: float
+    twist: float
+    transient: float
+
+
 @compiled
-def _stretch(
-    state: Array,
-    two: TwoMasses,
-    force: float,
-    anchor: float,
-    speed: float,
-    ramp: float,
-    h: float,
-    place: int,
-    work: Array,
-) -> float:
-    """Move by at most h seconds, up to the first stop or start of either body; returns the time used."""
+def _begun(state: Array, two: TwoMasses, force: float, anchor: float, speed: float) -> _Begun:
     motor, handle = two.motor, two.handle
     v1, v2, twist = state[MOTOR_VELOCITY], state[VELOCITY], state[MOTOR] - state[POSITION]
     slack = anchor - state[POSITION]
@@ -135,12 +137,41 @@ def _stretch(
     if two.driven == 0.0:
         side_2 = _side_of(side_2, on_2, handle.stiction, size)
     net_1, net_2 = _net(on_1, side_1, v1, motor), _net(on_2, side_2, v2, handle)
-    start = Start(v1, v2, side_1, side_2, net_1, net_2, speed)
-    steady = place >= 0 and motor.lag == 0.0 and ramp == 0.0
-    course = at_once(two, start, state[FORCE], h, place if steady else -1, work)
-    if course.t == 0.0:
-        course = _by_series(state, two, start, ramp, transient, h, work)
+    return _Begun(Start(v1, v2, side_1, side_2, net_1, net_2, speed), slack, twist, transient)
 
+
+@compiled
+def _stride(
+    state: Array, two: TwoMasses, force: float, anchor: float, speed: float, h: float, place: int, work: Array
+) -> float:
+    """Move by h seconds at once; 0 where a body may stop or start inside, and nothing is moved."""
+    begun = _begun(state, two, force, anchor, speed)
+    course = at_once(two, begun.start, state[FORCE], h, place, work)
+    return _end(state, two, begun, course, force, 0.0) if course.t > 0.0 else 0.0
+
+
+@compiled
+def _stretch(
+    state: Array,
+    two: TwoMasses,
+    force: float,
+    anchor: float,
+    speed: float,
+    ramp: float,
+    h: float,
+    work: Array,
+) -> float:
+    """Move by at most h seconds, up to the first stop or start of either body; returns the time used."""
+    begun = _begun(state, two, force, anchor, speed)
+    course = _by_series(state, two, begun.start, ramp, begun.transient, h, work)
+    return _end(state, two, begun, course, force, ramp)
+
+
+@compiled
+def _end(state: Array, two: TwoMasses, begun: _Begun, course: Course, force: float, ramp: float) -> float:
+    """Write down where both are and every energy; returns the time used."""
+    motor, handle, (start, slack, twist, transient) = two.motor, two.handle, begun
+    v2, side_1, side_2, speed = start.v2, start.side_1, start.side_2, start.speed
     t, to_1, after_1, to_2, after_2, moved_1, moved_2, way_1, way_2, taken, fast_1, fast_2, apart = course
     state[STOPS] += abs(side_1) * (1.0 - abs(after_1)) + abs(side_2) * (1.0 - abs(after_2))
     viscous, dry = motor.damping * fast_1, motor.coulomb * abs(moved_1)

@@ -148,6 +148,8 @@ def _chosen(
     chosen: dict[str, Environment] = {}
     for name in (part.strip() for part in typed.split(",")):
         if name not in laws:
-            raise InputError(f"there is no law {quoted(name)}; {suggestion(name, list(laws))}")
+            raise InputError(
+                f"there is no such law for this device, {quoted(name)}; {suggestion(name, list(laws))}"
+            )
         chosen[name] = laws[name]
     return {**chosen, **yours}

@@ -190,6 +190,7 @@ def _report(found: xr.Dataset) -> Iterator[Part]:
     free = [
         shown(float(found[key]), found[key].attrs["units"])
         for key in ("free_mass", "free_damping", "free_friction")
+        if found[key].notnull()  # the mass of a handle may be unknown
     ]
     yield f"free air: {', '.join(free)}"
 
@@ -240,6 +241,7 @@ def _json(found: xr.Dataset) -> str:
     free = {
         f"{key}_{unit_suffix(found[key].attrs['units'])}": float(found[key])
         for key in ("free_mass", "free_damping", "free_friction")
+        if found[key].notnull()
     }
     return to_json(
         {

@@ -250,6 +250,7 @@ def _free(found: xr.Dataset) -> str:
     parts = [
         f"{number(float(found[name]))} {unit_text(found[name].attrs['units'])}"
         for name in ("free_mass", "free_damping", "free_friction")
+        if found[name].notnull()  # the mass of a handle may be unknown
     ]
     return f"Felt in free air: {', '.join(parts)}."
 
