@@ -68,12 +68,18 @@ def _same(one: Array, other: Array) -> bool:
     return one.shape == other.shape and bool((one == other).all())
 
 
+def _near(one: Array, other: Array) -> bool:
+    """Of two masses the page takes the series where the simulator takes products: the same but for rounding."""
+    return one.shape == other.shape and bool(np.allclose(one, other, 0.0, 1e-9 * np.abs(other).max(axis=0)))
+
+
 def test_the_engine_moves_as_the_simulator_does(tmp_path: Path) -> None:
     loops = _loops()
     jobs = [Job(loop, moved(loop, 2.0, seed)) for seed, loop in enumerate(loops.values())]
     for name, job, rows in zip(loops, jobs, played(jobs, tmp_path), strict=True):
         assert np.unique(rows[:, 3]).size > 0.5 * len(rows), name
-        assert _same(rows[:, 3:], simulated(job.loop, job.pointer)), name
+        alike = _same if job.loop.loop[0].transmission is None else _near
+        assert alike(rows[:, 3:], simulated(job.loop, job.pointer)), name
 
 
 def test_every_preset_moves_as_the_simulator_does(tmp_path: Path) -> None:

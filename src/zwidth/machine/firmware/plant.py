@@ -3,7 +3,7 @@
     M ẍ = F − f_a − b ẋ − f_c sgn ẋ + k (x_a − x) + c (ẋ_a − ẋ)        M = m + m_h
 
 with the stops, the stiction, the turns and the energies of `loop.step`: the same operations, the same bits.
-Motor and handle with a transmission between them move as `loop.two_masses` has it, and as exactly.
+Motor and handle with a transmission between them move by the series of `loop.two_masses`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """From a device and what it renders to a loop that a page plays: law emitted, plant laid out.
 
 The page's engine moves the plant by the module of `firmware.plant` and asks the law by that of
-`firmware.module`: with the same hand, what is played has the bits of `zwidth.simulate`.
+`firmware.module`: with the same hand, what is played has the bits of `zwidth.simulate`; behind
+a transmission they differ by rounding.
 """
 
 from __future__ import annotations
