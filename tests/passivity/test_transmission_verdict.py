@@ -75,3 +75,26 @@ def test_a_bracket_is_accepted_as_it_is_saved():
 def test_what_plays_no_part_has_no_limit(name):
     with pytest.raises(zw.InputError, match="plays no part, so it has no limit"):
         zw.limit(DEVICE, zw.Wall(100), f"transmission.{name}")
+
+
+@pytest.mark.parametrize("delay", [0, "0.5 ms", "1.3 ms"])
+@pytest.mark.parametrize("stiffness", [2131.8, 28657, 5.33e6])
+def test_without_friction_behind_the_motor_its_own_decides(delay, stiffness):
+    """Whatever the cable is: the limit is that of one mass with b₁, above it a violation that is checked."""
+    between = zw.Transmission(stiffness=stiffness, handle_mass=0.03)
+    device = zw.Device(mass=0.03, damping=0.06, rate=1000, delay=delay, transmission=between)
+    limit = zw.check(device.motor_side, zw.Wall(stiffness=1)).max_stiffness
+    below, above = (zw.check(device, zw.Wall(stiffness=limit * factor)) for factor in (0.999, 1.001))
+    assert (below.outcome, below.scope.transmission) == ("passive", "any")
+    assert (above.outcome, above.scope.transmission) == ("active", "as given")
+    assert above.violation.verify()
+    assert above.certificate is None
+
+
+def test_without_friction_behind_the_motor_a_hand_gains_just_above_its_limit():
+    """Replayed in the simulator, where 2b₁/T = 120 N/m."""
+    between = zw.Transmission(stiffness=28657, handle_mass=0.03)
+    device = zw.Device(mass=0.03, damping=0.06, rate=1000, transmission=between)
+    assert zw.check(device, zw.Wall(stiffness=121.2)).witness.energy > 0
+    handle = device.replace(transmission=between.replace(encoder="handle"))
+    assert zw.check(handle, zw.Wall(stiffness=121.2)).outcome == "undecided"

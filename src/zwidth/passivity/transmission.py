@@ -30,6 +30,7 @@ from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.certificate import FORMAT, Certificate, positivity_document
 from zwidth.passivity.linear.boundary import COARSE, largest_holding
+from zwidth.passivity.linear.criterion import LinearRefutation, decide_linear
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear.transmission import (
     LARGEST_TURN,
@@ -249,7 +250,8 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
     elastic = elastic_of(device, law)
     found = TransmissionVerdict("undecided", scope, device, law, side=side, elastic=elastic, asked=asked)
     if elastic is None:
-        return replace(found, open=_unknown(given, device, law))
+        bare = _without_friction_behind(device, law, found)
+        return replace(found, open=_unknown(given, device, law)) if bare is None else bare
     decision = decide_elastic(elastic)
     setting = _setting(device, law, elastic)
     if isinstance(decision, ElasticRefutation):
@@ -273,6 +275,30 @@ def check_transmission(device: Device, law: Environment, asked: Contact, judge: 
     return replace(
         found, outcome=outcome, scope=scope.replace(contact=covered.contact), certificate=certificate
     )
+
+
+def _without_friction_behind(
+    device: Device, law: Environment, found: TransmissionVerdict
+) -> TransmissionVerdict | None:
+    """Where b₂ = c = 0 and the encoder is at the motor, what one mass with b₁ does not bear is active."""
+    given = device.transmission
+    assert given is not None
+    known = given.stiffness is not None and device.mass is not None and not _intervals(given, device, law)
+    rubs = ends(given.damping)[1] + ends(given.handle_damping)[1]
+    if not known or rubs or given.encoder == "handle" or not law.has_transfer_function or law.clamped:
+        return None
+    loop = linear_loop(device.motor_side, law)
+    decision = decide_linear(loop) if loop.damping else None
+    if not isinstance(decision, LinearRefutation) or decision.cosine is None:
+        return None
+    mass, stiffness = device.motor_side.exact("mass"), _certain(given.stiffness)
+    elastic = Elastic(loop, mass, stiffness, Fraction(0), Fraction(0), False)
+    refutation = ElasticRefutation("criterion", decision.cosine)
+    violation = ElasticViolation(elastic, _setting(device, law, elastic), refutation, device, law)
+    if not violation.verify():
+        return None
+    scope = found.scope.replace(contact=violation.contact)
+    return replace(found, outcome="active", scope=scope, violation=violation)
 
 
 def _unknown(given: Transmission, device: Device, law: Environment) -> str:

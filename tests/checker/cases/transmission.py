@@ -151,6 +151,20 @@ CASES = [
         "not shown to be unstable",
         shows="active",
     ),
+    *edge(
+        "no friction behind the motor: b = K T/2",
+        *(violation(([2 * (1 + move)], [1]), cable(outside=0), Fraction(-1)) for move in (TINY, 0)),
+        "not violated",
+        shows="active",
+    ),
+    refused(
+        "nor at the motor", violation(([2], [1]), cable(outside=0), Fraction(-1), damping=0), "not violated"
+    ),
+    refused(
+        "no friction behind the motor, the encoder at the hand",
+        violation(([3], [1]), cable(outside=0, encoder="handle"), Fraction(-1)),
+        "is needed",
+    ),
     accepted("held still it swings", violation(([30], [1]), cable(), UNSTABLE), "the loop is unstable"),
     refused("held still it is at rest", violation(([2], [1]), cable(), UNSTABLE), "not shown to be unstable"),
     accepted(

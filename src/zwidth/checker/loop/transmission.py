@@ -29,6 +29,7 @@ from ..exact.positivity import POSITIVITY, require_nonnegative
 from ..exact.roots import decay_in_powers, inside_unit_circle
 from .linear import cosine_sums, require_coprime
 from .loop import LOOP, Loop, in_whole_numbers, loop_of
+from .violation import criterion_at
 
 TRANSMISSION = Record(
     {
@@ -105,8 +106,17 @@ def elastic(told: Read) -> str:
 
 
 def elastic_violation(told: Read) -> str:
-    """Confirm that a hand takes energy out, and say why."""
-    p, proof = _loop(told), told.proof
+    """Confirm that a hand takes energy out, and say why.
+
+    Without friction behind the motor n is b k² alone, and every sum is that of one mass with the motor's b.
+    """
+    given, proof = told.transmission, told.proof
+    if proof.kind == "criterion" and given.encoder == "motor" and not given.damping + given.handle_damping:
+        p = loop_of(told.loop)
+        if not p.damping or criterion_at(p, proof.cosine) >= 0:
+            raise Invalid(_NOT_VIOLATED)
+        return _violated_at(p, proof.cosine)
+    p = _loop(told)
     if proof.kind == "criterion":
         return _violated(p, told.transmission, proof.cosine)
     require_coprime(p)
@@ -126,7 +136,14 @@ def _violated(p: Loop, told: Read, cosine: Fraction) -> str:
     for c in reversed(criterion):
         total = total * x + c
     if total.sign != -1:
-        raise Invalid("the criterion is not violated at this frequency")
+        raise Invalid(_NOT_VIOLATED)
+    return _violated_at(p, cosine)
+
+
+_NOT_VIOLATED = "the criterion is not violated at this frequency"
+
+
+def _violated_at(p: Loop, cosine: Fraction) -> str:
     hertz = Fraction(acos(cosine) / (2 * pi)) / p.period
     return f"with its transmission the criterion is violated at {about(hertz)} Hz"
 

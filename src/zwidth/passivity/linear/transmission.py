@@ -136,7 +136,12 @@ class Elastic:
 
     @cached_property
     def polynomial(self) -> tuple[fmpz_poly, int]:
-        """A whole polynomial p with p 2^−shift a hair below the criterion on [−1, 1]."""
+        """A whole polynomial p with p 2^−shift a hair below the criterion on [−1, 1].
+
+        Without friction behind the motor it is that of one mass.
+        """
+        if not self.damping + self.handle_damping:
+            return self.loop.criterion, 0
         return _below(self.value, self.degree, self.bits)
 
     @cached_property
