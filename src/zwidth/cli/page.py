@@ -19,7 +19,6 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.output import GLUE, columns, quiet_pipe, spelled
-from zwidth.passivity.result import Evidence
 from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
@@ -194,17 +193,28 @@ def joules(witness: Moves) -> str:
     return total
 
 
-REPLAYED = ", replayed in the simulator, not checked by the independent checker"
+def _said_of_a_replay(witness: Moves) -> str:
+    from zwidth.passivity.result import Evidence  # loaded by now
+
+    checked = isinstance(witness, Evidence)
+    return "" if checked else ", replayed in the simulator, not checked by the independent checker"
+
+
+_LARGEST = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
+"""How far, and how fast, a hand goes at most [m, m/s; rad, rad/s]."""
 
 
 def motion_in_short(witness: Moves) -> str:
     """How long, how deep and how fast it is; what it takes where the claim does not say it."""
-    replayed = "" if isinstance(witness, Evidence) else f", takes {shown(witness.energy, 'J')} out{REPLAYED}"
+    replayed = _said_of_a_replay(witness)
+    replayed = replayed and f", takes {shown(witness.energy, 'J')} out{replayed}"
+    far, fast = _LARGEST[witness.unit]
+    beyond = witness.depth > far or witness.peak_speed > fast
     return (
         f"{witness.motion.samples:.6g} samples in "
         f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
         f"{shown(witness.depth, witness.unit)} at up to {shown(witness.peak_speed, witness.unit + '/s')}"
-        f"{replayed}"
+        f"{', more than any hand does' if beyond else ''}{replayed}"
     )
 
 
@@ -214,7 +224,7 @@ def motion_lines(witness: Moves, fancy: bool) -> Iterator[Text]:
     for part in witness.motion.repeats:
         if part.times > 1:
             yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")
-    yield Text(f"extracts {joules(witness)}{'' if isinstance(witness, Evidence) else REPLAYED}", style="bold")
+    yield Text(f"extracts {joules(witness)}{_said_of_a_replay(witness)}", style="bold")
     first = witness.positions[:_SAMPLES_SHOWN]
     more = " …" if len(witness.positions) > len(first) else ""
     yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")
