@@ -35,7 +35,6 @@ NOT_RUN = {
     "docs/map.md 2": "two maps in full size take a minute",
     "docs/networks.md 1": "it starts processes; tests/network runs such",
     "docs/pairs.md 8": "two arms in real time; tests/servo runs such",
-    "docs/theory/known-hand.md 2": "a boundary over a box of hands takes a quarter of a minute",
 }
 """Pages, or the n-th block of one, and why they are not run: their syntax is read all the same."""
 

@@ -11,7 +11,7 @@ cannot gain for ever exactly if, with n(θ) the damping that the criterion asks 
     b ≥ n(θ) above f₀,    n(θ) ≤ b (b − a)/(b − a (1 − s)) below,    s = (sin ½θ/½θ)²
 
 and with contact made and broken if the loop is passive with b − a in the place of b.
-Derived in docs/theory/active-hand.md.
+Derived in docs/theory/known-hand.md.
 """
 
 from __future__ import annotations

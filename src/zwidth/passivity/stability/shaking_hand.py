@@ -217,7 +217,7 @@ def _force(loop: LinearLoop) -> tuple[list[Fraction], int]:
 #     b_in = b − a                               for a ≤ b
 #     b_in = b (b − a)/(b − a (1 − s₀))          for a > b,  where b > a (1 − s₀)
 #
-# s₀ = 1 − θ₀²/12 ≤ (sin ½θ/½θ)² for all θ ≤ θ₀ = 2π f₀ T.  Both are b_in of docs/theory/active-hand.md
+# s₀ = 1 − θ₀²/12 ≤ (sin ½θ/½θ)² for all θ ≤ θ₀ = 2π f₀ T.  Both are b_in of docs/theory/known-hand.md
 # at its smallest in the band: exact for θ → 0, and too small by a part of less than θ₀²/12 elsewhere.
 
 
