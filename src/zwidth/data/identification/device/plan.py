@@ -307,7 +307,7 @@ def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
 PARAMETERS = ("mass", "damping", "coulomb_friction")
 
 INEFFICIENCY = 1.2
-"""γ, on the safe side of what was measured: docs/experiment.md."""
+"""γ, on the safe side of what was measured: docs/theory/identification.md."""
 
 SAMPLES = 4000
 """At which the regressors of ten seconds are taken."""

@@ -4,7 +4,7 @@ A force that is read τ late is f_h − τ ḟ_h, and takes c τ of mass and k �
 left tells τ: by ẍ of the equation of motion of device and finger, M = m + m_h in all,
 
     −ḟ_h = m_h x⃛ + c ẍ + k ẋ,    M x⃛ = −ḟ_a − (b + c) ẍ − k ẋ
-    f_h (t − τ) = … + γ ḟ_a,      γ = τ m_h/M                                                     (1)
+   −f_h (t − τ) = … + γ ḟ_a,      γ = τ m_h/M                                                     (1)
 
 so the actuator's steps are what is seen late, and tremor, which is not in ḟ_a, does not matter.  Where it
 is not logged the force of the hand is read later, sample by sample, and what the fit leaves of each piece
