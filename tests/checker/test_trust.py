@@ -37,7 +37,7 @@ def test_the_program_of_the_page_finds_one_ratio(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """> 0 at every frequency; with a factor that was changed it finds several."""
-    page = (DOCS / "theory" / "trust.md").read_text(encoding="utf-8")
+    page = (DOCS / "theory" / "certificates.md").read_text(encoding="utf-8")
     (program,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     monkeypatch.chdir(tmp_path)
 

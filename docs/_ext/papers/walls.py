@@ -13,8 +13,7 @@ TITLE = "Effects of position quantization and sampling rate on virtual-wall pass
 
 SOURCE = (
     "Slips: (16) and (17) print Λ for Δ; the index of the compression prints ẋ₂² for ẋ²; "
-    '"Fig. 8 shows that system passivity may be a good predictor" means Fig. 9. '
-    "Statements that needed more words: [what the papers say](papers.md)."
+    '"Fig. 8 shows that system passivity may be a good predictor" means Fig. 9.'
 )
 
 PADDLE = zw.catalogue.device("haptic-paddle")

@@ -62,7 +62,7 @@ def test_a_spring_that_is_too_stiff_for_its_damping(seed):
     assert forms.abbott_okamura_stiffness(b, friction, step, period).sampling.fraction == limit
     loop = device(b, friction, step, period)
     above = limit * BEYOND
-    needed = (friction - above * step / 2) / (above / 2 - b / period)  # no gain below it, see quantization.md
+    needed = (friction - above * step / 2) / (above / 2 - b / period)  # no gain below it, see contact.md
     assert needed < 200 * step
     counts = ceil(needed / step * Fraction(3, 2)) + 3
     motion = refuted(program_of(loop, zw.Wall(above), counts, counts))
