@@ -1,7 +1,7 @@
 // A Hapkit that is served by zwidth: it tells where its handle is, and gives the force that it is told.
 //
 // For a board with an ATmega328P at 16 MHz: motor on pins 5 (pulse width) and 8 (direction), magneto-resistive
-// sensor on A2.  The frames are described in docs/devices/hapkit.md, and in src/zwidth/machine/servo/devices/hapkit.py:
+// sensor on A2.  The frames, little-endian, CRC-16 of ITU-T V.41 begun with ones; kind 1 start, 2 ask, 3 force:
 //
 //   to the board    A5  kind  number  force, int16 [mN]          CRC-16          7 bytes
 //   from the board  5A  number  state  position, int32 [counts]  CRC-16          9 bytes

@@ -25,7 +25,7 @@ def library(tmp_path_factory):
 
 
 def frame(kind, number=0, millinewtons=0):
-    """To the board, as docs/devices/hapkit.md has it."""
+    """To the board, as the head of the sketch has it."""
     body = struct.pack("<BBBh", 0xA5, kind, number, millinewtons)
     return body + struct.pack("<H", binascii.crc_hqx(body, 0xFFFF))
 

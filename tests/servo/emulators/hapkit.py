@@ -1,4 +1,4 @@
-"""A Hapkit with its sketch, written from docs/devices/hapkit.md; and that of examples/hapkit itself."""
+"""A Hapkit with its sketch, written from the frames at the head of the sketch; and that sketch itself."""
 
 import binascii
 import ctypes

@@ -155,7 +155,7 @@ class Hapkit(CompiledConnection):
         Serial port of the board, "/dev/ttyUSB0".
     count
         Way of the handle in one count of the sensor [m], not 0; negative where the counts fall while
-        the position grows.  To be found with a rule, see docs/devices/hapkit.md.
+        the position grows.  To be found with a rule, see docs/connections.md.
     baud
         As the sketch has it [Bd].
 
