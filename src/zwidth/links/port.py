@@ -45,7 +45,7 @@ class Port(Parametric):
 
     A port is a run: it draws a number, which every packet tells with that of the run that it is meant for.
     What is told is a sum for each run of the other end, and only a packet that has this port's own number
-    counts: energy is never counted by two runs, whenever either end starts anew (docs/theory/links.md).
+    counts: energy is never counted by two runs, whenever either end starts anew (docs/theory/pairs.md).
 
     Parameters
     ----------

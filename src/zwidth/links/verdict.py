@@ -31,7 +31,7 @@ def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
     devices that start at rest, whenever and as often as either port starts anew.  For waves with a ledger it
     comes with a certificate.  For waves without one it is so exactly if w ≤ b and the displacement is read
     without steps, a theorem on paper.  Of other laws a motion is looked for that takes energy out.
-    Derivation: docs/theory/links.md.
+    Derivation: docs/theory/pairs.md.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class PortVerdict(PassivityAnswer):
         if device.assumed:
             yield f"{', '.join(device.assumed)} not given, taken as 0"
         if self.outcome == "theorem":
-            yield "a proof on paper, of exact numbers: docs/theory/links.md; no certificate"
+            yield "a proof on paper, of exact numbers: docs/theory/pairs.md; no certificate"
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """The port."""

@@ -17,7 +17,7 @@ An encoder of resolution Δ reads Δx no better than ± Δ, so
     R ← R − f Δx − c + b s²/T + f_c s,   s = max(0, |Δx| − Δ),   c = ½ Δ (|f| − |f⁻| + |f − f⁻|)
 
 and |f| is kept so small that R ≥ 0 for every Δx; what that takes is held back until the force has acted.
-The proof is in docs/theory/links.md.
+The proof is in docs/theory/pairs.md.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ class Waves(Port):
 #     f = 2 √(w/T) a,    u = √(w/T) Δx − a,    u² = a² − f Δx + (w/T) Δx²        (waves in √J)
 #
 # Passive whatever the link does if w ≤ b and the displacement is read exactly; else a hand takes energy out,
-# whatever Coulomb friction there is (docs/theory/links.md).
+# whatever Coulomb friction there is (docs/theory/pairs.md).
 
 
 HELD_WAVES = 2.0
@@ -173,7 +173,7 @@ class NaiveWaves(Waves):
 #     M = w τ    with one that is free, besides both devices; their dampings are felt as b − w each.
 #
 # A port that smooths its force over τ_s has τ_s more in τ.  (Niemeyer and Slotine 1991 have w/τ and w τ for a
-# continuous link; docs/theory/links.md derives these.)
+# continuous link; docs/theory/pairs.md derives these.)
 
 
 def one_way(late: int, period: Fraction) -> Fraction:
