@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "glossary.md"
+PAGE = ROOT / "docs" / "reference.md"
 
 
 @cache
@@ -57,4 +57,4 @@ def test_names_are_those_of_the_glossary():
         if not (name.startswith("__") and name.endswith("__"))
         if single & set(words(name)) or any(word in "_".join(words(name)) for word in joined)
     ]
-    assert not found, f"docs/glossary.md has other words for these: {found}"
+    assert not found, f"docs/reference.md has other words for these: {found}"

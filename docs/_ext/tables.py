@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
@@ -14,12 +15,17 @@ import papers
 import trust
 
 from zwidth import catalogue
+from zwidth.cli.commands import COMMANDS, configure
 from zwidth.cli.options import (
+    CONTACT,
+    FORCE,
+    IN_FULL,
+    LAW,
     coupling_parameters,
     device_parameters,
     environment_parameters,
 )
-from zwidth.cli.parsing import Parameter
+from zwidth.cli.parsing import Helping, Parameter
 from zwidth.data.gains.plant import plants as published_plants
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
@@ -77,6 +83,83 @@ def connection_options() -> str:
     from zwidth.cli.machine.serve_tables import connection_parameters
 
     return _options(connection_parameters())
+
+
+SHARED = {
+    words.partition(" > ")[0].removesuffix("..."): meaning
+    for words, meaning in {**LAW, **CONTACT, **IN_FULL, **FORCE}.items()
+}
+"""Options of several commands, told once."""
+
+
+def shared_options() -> str:
+    """What several commands take in the same words."""
+    takes = {name: [own for action in _actions(name) if (own := _shared(action))] for name in COMMANDS}
+    rows = []
+    for words, meaning in SHARED.items():
+        option = words.split()[0]
+        commands = ", ".join(f"`{name}`" for name, options in takes.items() if option in options)
+        rows.append((f"`{words}`", _in_a_row(meaning), "all that write" if option == "--force" else commands))
+    return markdown(("option", "meaning", "commands"), rows)
+
+
+def options_of(command: str) -> str:
+    """What a command takes besides the parameters and options that others have too, as its parser has it."""
+    elsewhere = {(one.option, one.help) for table in _parameter_tables(command) for one in table()}
+    rows = [
+        (_typed(action), _in_a_row(action.help or ""))
+        for action in _actions(command)
+        if not _shared(action)
+        if not any((option, action.help) in elsewhere for option in action.option_strings)
+    ]
+    return markdown(("option", "meaning"), rows)
+
+
+def _actions(command: str) -> list[argparse.Action]:
+    parser = argparse.ArgumentParser(add_help=False)
+    configure(command, parser)
+    seen = [a for a in parser._actions if a.help != argparse.SUPPRESS and not isinstance(a, Helping)]
+    for action in seen:
+        action.help = (action.help or "").replace("%%", "%")
+    return seen
+
+
+def _shared(action: argparse.Action) -> str:
+    """The name of an option that means the same in several commands, else none."""
+    for words, meaning in SHARED.items():
+        option = words.split()[0]
+        if option in action.option_strings and (option == "--force" or meaning == action.help):
+            return option
+    return ""
+
+
+def _typed(action: argparse.Action) -> str:
+    if not action.option_strings:
+        return f"`{action.metavar}`"
+    value = f" {action.metavar}" if action.metavar else ""
+    return ", ".join(f"`{option}{value}`" for option in sorted(action.option_strings, reverse=True))
+
+
+def _in_a_row(text: str) -> str:
+    """A help text with the options in it as code."""
+    return re.sub(r"(?<![\w-])--?[a-z][\w.-]*", r"`\g<0>`", _pretty(text).replace("|", "\\|"))
+
+
+def _parameter_tables(command: str) -> list[Callable[[], Iterable[Parameter]]]:
+    """What those tables of parameters are made of that stand in the section of a command, or before all."""
+    from zwidth.cli.machine.serve_tables import connection_parameters, safety_parameters
+    from zwidth.cli.pair.links import link_parameters
+    from zwidth.cli.simulate.tables import follower_parameters, operator_parameters, simulation_parameters
+
+    of_a_touch = [operator_parameters, follower_parameters, simulation_parameters]
+    own = {
+        "pair": [coupling_parameters],
+        "links": [link_parameters],
+        "simulate": of_a_touch,
+        "serve": [*of_a_touch, connection_parameters, safety_parameters],
+        "sweep": [*of_a_touch, coupling_parameters],
+    }
+    return [device_parameters, environment_parameters, *own.get(command, [])]
 
 
 def connection_keys() -> str:
@@ -354,6 +437,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "papers_by_figure": papers_by_figure,
     "plants": plants,
     "follower_options": follower_options,
+    "shared_options": shared_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,
     "glossary": glossary,
@@ -361,16 +445,22 @@ TABLES: dict[str, Callable[[], str]] = {
 }
 
 
-def write() -> None:
-    """Write every table where the pages include it; leave an unchanged one alone."""
+def generated() -> dict[str, Callable[[], str]]:
+    """Every table, by the name of its file."""
     from zwidth.machine.servo.devices.registry import CONNECTIONS
 
-    GENERATED.mkdir(exist_ok=True)
-    for name, table in (
+    return (
         TABLES
         | {f"settings_{name}": partial(settings, name) for name in CONNECTIONS}
+        | {f"options_{name}": partial(options_of, name) for name in COMMANDS}
         | {f"answer_{name}": partial(answer, where) for name, where in ANSWERS.items()}
-    ).items():
+    )
+
+
+def write() -> None:
+    """Write every table where the pages include it; leave an unchanged one alone."""
+    GENERATED.mkdir(exist_ok=True)
+    for name, table in generated().items():
         path, text = GENERATED / f"{name}.md", table()
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
