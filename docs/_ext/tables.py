@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -15,6 +15,8 @@ import papers
 import trust
 
 from zwidth import catalogue
+from zwidth.checker.document.fields import Either, Field, List, OneOf, Record
+from zwidth.checker.kinds import KINDS, fields_of
 from zwidth.cli.commands import COMMANDS, configure
 from zwidth.cli.options import (
     CONTACT,
@@ -32,7 +34,8 @@ from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, all_keys
 from zwidth.quantity.answered import declared
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.study.bench.bench import SCORES
 
 GENERATED = Path(__file__).parent.parent / "_generated"
 
@@ -328,6 +331,7 @@ ANSWERS = {
     "checkup": "machine.servo.checkup:Checkup",
     "diagnosis": "data.diagnosis.result:Diagnosis",
     "finding": "machine.servo.checkup:Finding",
+    "emitted": "machine.firmware.emit:Emitted",
     "gains": "data.gains.verdict:GainsVerdict",
     "held_joints": "data.gains.held_joints:HeldJoints",
     "held_pair": "passivity.pairs.held.verdict:HeldVerdict",
@@ -335,8 +339,10 @@ ANSWERS = {
     "joint_gains": "data.gains.joint:JointGains",
     "joint_verdict": "data.gains.verdict:JointVerdict",
     "lateness": "machine.servo.lateness:Lateness",
+    "laws": "study.bench.comparison:LawComparison",
     "limit": "passivity.bracket.bracket:Bracket",
     "link": "machine.network.peer:LinkReport",
+    "links": "links.comparison:LinkComparison",
     "measured": "machine.servo.proving:Measured",
     "null_space": "passivity.workspace.null_space:NullSpace",
     "pair": "passivity.pairs.verdict:PairVerdict",
@@ -351,10 +357,12 @@ ANSWERS = {
     "served_pair": "machine.servo.report:PairServoReport",
     "served_port": "machine.servo.report:PortReport",
     "shaking_hand": "passivity.stability.shaking_hand:ShakingHand",
+    "simulated": "cli.simulate.simulate:BESIDES",
     "stability": "passivity.stability.known_hand:Stability",
     "stiffness_at": "passivity.pairs.limits:StiffnessAt",
     "stiffness_cost": "machine.servo.lateness:StiffnessCost",
     "tissue": "data.tissue.result:TissueFit",
+    "tissue_test": "data.tissue.experiment.result:TissueTest",
     "verdict": "passivity.linear_verdict:LinearVerdict",
     "workspace": "passivity.workspace.verdict:Workspace",
 }
@@ -366,12 +374,56 @@ def answer(where: str) -> str:
     module, _, name = where.partition(":")
     kind = getattr(import_module(f"zwidth.{module}"), name)
     rows = [("`format`", f'`"{kind.FORMAT}"`')] if getattr(kind, "FORMAT", "") else []
-    for name, one in declared(kind).items():
+    for name, one in ({} if isinstance(kind, tuple) else declared(kind)).items():
         if not one.only_shown:
             keys = one.stands_as or [one.key_for(name, "linear")]
             parts = f": {', '.join(f'`{part}`' for part in one.names)}" if one.names else ""
             rows.append((", ".join(f"`{key}`" for key in keys), _in_a_cell(one.meaning) + parts))
+    besides = kind if isinstance(kind, tuple) else getattr(kind, "BESIDES", ())
+    rows += [(f"`{keys.replace(', ', '`, `')}`", meaning.replace("|", "\\|")) for keys, meaning in besides]
     return markdown(("key", "value"), rows)
+
+
+def evidence_keys() -> str:
+    """Every object in a document that the checker reads: its entries, and the kinds that have it."""
+    names: dict[str, list[str]] = {}
+    kinds: dict[str, list[str]] = {}
+    for kind in KINDS:
+        for name, entries in _objects(fields_of(kind), "the document"):
+            names.setdefault(entries, []).append(name)
+            kinds.setdefault(entries, []).append(kind)
+    order = list(dict.fromkeys(own[0] for own in names.values()))
+    rows = [
+        (", ".join(dict.fromkeys(own)), entries, ", ".join(dict.fromkeys(kinds[entries])))
+        for entries, own in sorted(names.items(), key=lambda one: order.index(one[1][0]))
+    ]
+    return markdown(("object", "entries", "of kind"), rows)
+
+
+def _objects(field: Field, name: str) -> Iterator[tuple[str, str]]:
+    """Each object with entries besides its kind, by the name that it stands under; the optional in brackets."""
+    if isinstance(field, Record):
+        own = {key: one for key, one in field.fields.items() if key not in ("format", "kind")}
+        told = {key: f"`{one.key(key, 'linear')}`" for key, one in own.items()}
+        if told:
+            yield name, ", ".join(told[key] if one.required else f"[{told[key]}]" for key, one in own.items())
+        for key, one in own.items():
+            if key != "reduced":  # a document itself
+                yield from _objects(one, f"`{key}`")
+    inside = {List: ["of"], Either: ["first", "second"]}.get(type(field), [])
+    cases = list(field.cases.values()) if isinstance(field, OneOf) else []
+    for part in [*(getattr(field, one) for one in inside), *cases]:
+        yield from _objects(part, name)
+
+
+def bench_scores() -> str:
+    """What each law is given for on the bench."""
+    rows = [(f"`{_key(name, own.unit)}`", f"{own.meaning} ({own.touch})") for name, own in SCORES.items()]
+    return markdown(("key", "meaning"), rows)
+
+
+def _key(name: str, unit: str) -> str:
+    return name if unit == "1" else f"{name}_{unit_suffix(unit)}"
 
 
 def _in_a_cell(meaning: str) -> str:
@@ -417,6 +469,7 @@ def papers_by_figure() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
+    "bench_scores": bench_scores,
     "cable_limits": cable_limits,
     "chip_costs": chip_costs,
     "connection_keys": connection_keys,
@@ -440,6 +493,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "shared_options": shared_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,
+    "evidence_keys": evidence_keys,
     "glossary": glossary,
     "velocity_keys": velocity_keys,
 }
