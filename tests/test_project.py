@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import dataclasses
 import inspect
+import json
 import math
 import re
 import shlex
@@ -342,6 +343,30 @@ def test_every_key_of_the_json_is_on_its_page():
     for device, environment in loops:
         keys |= _keys(zw.check(device, environment).to_dict())
     assert not [key for key in sorted(keys) if f"`{key}`" not in page]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "check haptic-paddle --stiffness 770 --replay",
+        "check haptic-paddle --stiffness 300 --active-below '10 Hz'",
+        "each haptic-paddle hapkit --stiffness 200",
+        "emit haptic-paddle --stiffness 250 -o paddle",
+        "gains {leader.yaml} {follower.yaml}",
+        "identify {session.csv} --stiffness 100",
+        "simulate haptic-paddle --stiffness 770 --operator dowel --duration 0.3",
+        "workspace two-link --joint-damping 0.002 --joint-friction 0.1 --joint-resolution 0.1 --stiffness 50",
+        "workspace {arm.urdf} --joint-damping 1 --stiffness 500 --postures 200",
+    ],
+)
+def test_every_key_that_a_command_prints_is_on_the_page_of_the_json(line, tmp_path, monkeypatch, capsys):
+    """Files, which have names of their own, aside."""
+    monkeypatch.chdir(tmp_path)
+    argv = re.sub(r"\{(.+?)\}", lambda name: str(zw.samples.path(name[1])), line)
+    main([*shlex.split(argv), "--json"])
+    document = json.loads(capsys.readouterr().out)
+    document.pop("files", None)
+    assert not [key for key in sorted(_keys(document)) if f"`{key}`" not in json_page()]
 
 
 def _unrolled_as_documented(positions, repeats):

@@ -401,7 +401,7 @@ def evidence_keys() -> str:
 
 
 def _objects(field: Field, name: str) -> Iterator[tuple[str, str]]:
-    """Each object with entries besides its kind, by the name that it stands under; the optional in brackets."""
+    """Each object with entries besides its kind, by the name it stands under; the optional in brackets."""
     if isinstance(field, Record):
         own = {key: one for key, one in field.fields.items() if key not in ("format", "kind")}
         told = {key: f"`{one.key(key, 'linear')}`" for key, one in own.items()}

@@ -272,9 +272,11 @@ BESIDES = (
     ),
     (
         "energy",
-        "change of each over the touch (`hand_work_J`, `actuator_work_J`, `viscous_loss_J`, …), "
-        "`energy_got_out_J`, `held_at_start_J` and what is beyond it, `energy_extracted_J` (both null"
-        " where no bound is known), `energy_moved_J`, and by how much the two balances do not add up:"
+        "change of each over the touch (`hand_work_J`, `actuator_work_J`, `kinetic_energy_J`, "
+        "`viscous_loss_J`, `coulomb_loss_J`; of the hand `hand_source_work_J`, `hand_kinetic_energy_J`, "
+        "`hand_spring_energy_J`, `hand_damper_loss_J`), "
+        "`energy_got_out_J`, `held_at_start_J` and what is beyond it, `energy_extracted_J` (both null where "
+        "no bound is known), `energy_moved_J`, and by how much the two balances do not add up:"
         " `largest_residual_J`, `largest_hand_residual_J`",
     ),
     ("interrupted_at_s", "only after Ctrl-C"),
