@@ -32,6 +32,7 @@ extensions = [
     "playpage",  # of _ext
     "sphinx-mathjax-offline",  # formulas are drawn without a network
     "computed",  # commands that are run where the page is built
+    "names",  # the public names of a page
 ]
 exclude_patterns = ["_build", "_generated", "gallery/GALLERY_HEADER.rst"]
 

@@ -18,6 +18,6 @@ def json_page() -> str:
         import tables
     finally:
         sys.path.pop(0)
-    page = (DOCS / "json.md").read_text(encoding="utf-8")
-    included = re.findall(r"\{include\} _generated/answer_(.+)\.md", page)
-    return "\n".join([page, *(tables.answer(tables.ANSWERS[name]) for name in included)])
+    page, made = (DOCS / "json.md").read_text(encoding="utf-8"), tables.generated()
+    included = re.findall(r"\{include\} _generated/(.+)\.md", page)
+    return "\n".join([page, *(made[name]() for name in included)])

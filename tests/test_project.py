@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import dataclasses
 import inspect
+import json
 import math
 import re
 import shlex
@@ -214,7 +215,7 @@ def test_what_is_run_with_the_oldest_versions_exists():
 
 
 def _blocks(page: str, language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", _text(page), re.DOTALL)
+    return re.findall(rf"```{re.escape(language)}\n(.*?)```", _text(page), re.DOTALL)
 
 
 def test_the_readme_example_says_what_comes_out():
@@ -271,6 +272,12 @@ def test_the_specifications_of_a_page_can_be_read(page, tmp_path):
                 build_touch(read["operator"], read.get("simulation"), {}, loop.device.motion)
 
 
+def test_every_public_name_is_on_the_page_of_the_interface():
+    """In a block that lists names; those of a namespace are listed by it."""
+    listed = set(re.findall(r"\w+", "\n".join(_blocks("docs/api.md", "{names}"))))
+    assert not [name for name in zw.__all__ if name not in listed and not inspect.ismodule(getattr(zw, name))]
+
+
 @cache
 def _command_line_page() -> str:
     """The page with its generated tables in place, as the docs build makes it."""
@@ -279,9 +286,10 @@ def _command_line_page() -> str:
         import tables
     finally:
         sys.path.pop(0)
-    page = _text("docs/command-line.md")
-    included = re.findall(r"\{include\} _generated/(.+)\.md", page)
-    return "\n".join([page, *(tables.TABLES[name]() for name in included)])
+    made = tables.generated()
+    return re.sub(
+        r"```\{include\} _generated/(.+)\.md\n```", lambda one: made[one[1]](), _text("docs/command-line.md")
+    )
 
 
 def _help(*command: str) -> str:
@@ -307,11 +315,13 @@ def test_every_parameter_is_on_the_command_line_page():
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_option_in_the_help_is_on_the_command_line_page(command):
-    page = _command_line_page()
-    assert f"zwidth {command}" in page
-    options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", _help(command)))
-    assert options
-    missing = [o for o in options if f"`{o}" not in page]
+    """Under the heading of the command, or among what several commands have in common."""
+    sections = dict(re.findall(r"^## (.+?)\n(.*?)(?=^## |\Z)", _command_line_page(), re.M | re.S))
+    others = {"serve": ["simulate"], "sweep": ["simulate", "limit", "pair"]}.get(command, [])
+    told = sections["What all have"] + "".join(sections[f"zwidth {name}"] for name in (command, *others))
+    options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", _help(command))) - {"--help"}
+    assert options or command == "completion"
+    missing = [o for o in options if f"`{o}" not in told]
     assert not missing
 
 
@@ -333,6 +343,30 @@ def test_every_key_of_the_json_is_on_its_page():
     for device, environment in loops:
         keys |= _keys(zw.check(device, environment).to_dict())
     assert not [key for key in sorted(keys) if f"`{key}`" not in page]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "check haptic-paddle --stiffness 770 --replay",
+        "check haptic-paddle --stiffness 300 --active-below '10 Hz'",
+        "each haptic-paddle hapkit --stiffness 200",
+        "emit haptic-paddle --stiffness 250 -o paddle",
+        "gains {leader.yaml} {follower.yaml}",
+        "identify {session.csv} --stiffness 100",
+        "simulate haptic-paddle --stiffness 770 --operator dowel --duration 0.3",
+        "workspace two-link --joint-damping 0.002 --joint-friction 0.1 --joint-resolution 0.1 --stiffness 50",
+        "workspace {arm.urdf} --joint-damping 1 --stiffness 500 --postures 200",
+    ],
+)
+def test_every_key_that_a_command_prints_is_on_the_page_of_the_json(line, tmp_path, monkeypatch, capsys):
+    """Files, which have names of their own, aside."""
+    monkeypatch.chdir(tmp_path)
+    argv = re.sub(r"\{(.+?)\}", lambda name: str(zw.samples.path(name[1])), line)
+    main([*shlex.split(argv), "--json"])
+    document = json.loads(capsys.readouterr().out)
+    document.pop("files", None)
+    assert not [key for key in sorted(_keys(document)) if f"`{key}`" not in json_page()]
 
 
 def _unrolled_as_documented(positions, repeats):

@@ -1,4 +1,4 @@
-"""One glossary decides: what its table of words rules out is no name in the source, and no file."""
+"""One table decides: what it rules out is no name in the source, and no file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "glossary.md"
+PAGE = ROOT / "CONTRIBUTING.md"
 
 
 @cache
@@ -57,4 +57,4 @@ def test_names_are_those_of_the_glossary():
         if not (name.startswith("__") and name.endswith("__"))
         if single & set(words(name)) or any(word in "_".join(words(name)) for word in joined)
     ]
-    assert not found, f"docs/glossary.md has other words for these: {found}"
+    assert not found, f"CONTRIBUTING.md has other words for these: {found}"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -14,19 +15,27 @@ import papers
 import trust
 
 from zwidth import catalogue
+from zwidth.checker.document.fields import Either, Field, List, OneOf, Record
+from zwidth.checker.kinds import KINDS, fields_of
+from zwidth.cli.commands import COMMANDS, configure
 from zwidth.cli.options import (
+    CONTACT,
+    FORCE,
+    IN_FULL,
+    LAW,
     coupling_parameters,
     device_parameters,
     environment_parameters,
 )
-from zwidth.cli.parsing import Parameter
+from zwidth.cli.parsing import Helping, Parameter
 from zwidth.data.gains.plant import plants as published_plants
 from zwidth.model.kind import Kind
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, all_keys
 from zwidth.quantity.answered import declared
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.study.bench.bench import SCORES
 
 GENERATED = Path(__file__).parent.parent / "_generated"
 
@@ -77,6 +86,83 @@ def connection_options() -> str:
     from zwidth.cli.machine.serve_tables import connection_parameters
 
     return _options(connection_parameters())
+
+
+SHARED = {
+    words.partition(" > ")[0].removesuffix("..."): meaning
+    for words, meaning in {**LAW, **CONTACT, **IN_FULL, **FORCE}.items()
+}
+"""Options of several commands, told once."""
+
+
+def shared_options() -> str:
+    """What several commands take in the same words."""
+    takes = {name: [own for action in _actions(name) if (own := _shared(action))] for name in COMMANDS}
+    rows = []
+    for words, meaning in SHARED.items():
+        option = words.split()[0]
+        commands = ", ".join(f"`{name}`" for name, options in takes.items() if option in options)
+        rows.append((f"`{words}`", _in_a_row(meaning), "all that write" if option == "--force" else commands))
+    return markdown(("option", "meaning", "commands"), rows)
+
+
+def options_of(command: str) -> str:
+    """What a command takes besides the parameters and options that others have too, as its parser has it."""
+    elsewhere = {(one.option, one.help) for table in _parameter_tables(command) for one in table()}
+    rows = [
+        (_typed(action), _in_a_row(action.help or ""))
+        for action in _actions(command)
+        if not _shared(action)
+        if not any((option, action.help) in elsewhere for option in action.option_strings)
+    ]
+    return markdown(("option", "meaning"), rows)
+
+
+def _actions(command: str) -> list[argparse.Action]:
+    parser = argparse.ArgumentParser(add_help=False)
+    configure(command, parser)
+    seen = [a for a in parser._actions if a.help != argparse.SUPPRESS and not isinstance(a, Helping)]
+    for action in seen:
+        action.help = (action.help or "").replace("%%", "%")
+    return seen
+
+
+def _shared(action: argparse.Action) -> str:
+    """The name of an option that means the same in several commands, else none."""
+    for words, meaning in SHARED.items():
+        option = words.split()[0]
+        if option in action.option_strings and (option == "--force" or meaning == action.help):
+            return option
+    return ""
+
+
+def _typed(action: argparse.Action) -> str:
+    if not action.option_strings:
+        return f"`{action.metavar}`"
+    value = f" {action.metavar}" if action.metavar else ""
+    return ", ".join(f"`{option}{value}`" for option in sorted(action.option_strings, reverse=True))
+
+
+def _in_a_row(text: str) -> str:
+    """A help text with the options in it as code."""
+    return re.sub(r"(?<![\w-])--?[a-z][\w.-]*", r"`\g<0>`", _pretty(text).replace("|", "\\|"))
+
+
+def _parameter_tables(command: str) -> list[Callable[[], Iterable[Parameter]]]:
+    """What those tables of parameters are made of that stand in the section of a command, or before all."""
+    from zwidth.cli.machine.serve_tables import connection_parameters, safety_parameters
+    from zwidth.cli.pair.links import link_parameters
+    from zwidth.cli.simulate.tables import follower_parameters, operator_parameters, simulation_parameters
+
+    of_a_touch = [operator_parameters, follower_parameters, simulation_parameters]
+    own = {
+        "pair": [coupling_parameters],
+        "links": [link_parameters],
+        "simulate": of_a_touch,
+        "serve": [*of_a_touch, connection_parameters, safety_parameters],
+        "sweep": [*of_a_touch, coupling_parameters],
+    }
+    return [device_parameters, environment_parameters, *own.get(command, [])]
 
 
 def connection_keys() -> str:
@@ -245,6 +331,7 @@ ANSWERS = {
     "checkup": "machine.servo.checkup:Checkup",
     "diagnosis": "data.diagnosis.result:Diagnosis",
     "finding": "machine.servo.checkup:Finding",
+    "emitted": "machine.firmware.emit:Emitted",
     "gains": "data.gains.verdict:GainsVerdict",
     "held_joints": "data.gains.held_joints:HeldJoints",
     "held_pair": "passivity.pairs.held.verdict:HeldVerdict",
@@ -252,8 +339,10 @@ ANSWERS = {
     "joint_gains": "data.gains.joint:JointGains",
     "joint_verdict": "data.gains.verdict:JointVerdict",
     "lateness": "machine.servo.lateness:Lateness",
+    "laws": "study.bench.comparison:LawComparison",
     "limit": "passivity.bracket.bracket:Bracket",
     "link": "machine.network.peer:LinkReport",
+    "links": "links.comparison:LinkComparison",
     "measured": "machine.servo.proving:Measured",
     "null_space": "passivity.workspace.null_space:NullSpace",
     "pair": "passivity.pairs.verdict:PairVerdict",
@@ -268,10 +357,12 @@ ANSWERS = {
     "served_pair": "machine.servo.report:PairServoReport",
     "served_port": "machine.servo.report:PortReport",
     "shaking_hand": "passivity.stability.shaking_hand:ShakingHand",
+    "simulated": "cli.simulate.simulate:BESIDES",
     "stability": "passivity.stability.known_hand:Stability",
     "stiffness_at": "passivity.pairs.limits:StiffnessAt",
     "stiffness_cost": "machine.servo.lateness:StiffnessCost",
     "tissue": "data.tissue.result:TissueFit",
+    "tissue_test": "data.tissue.experiment.result:TissueTest",
     "verdict": "passivity.linear_verdict:LinearVerdict",
     "workspace": "passivity.workspace.verdict:Workspace",
 }
@@ -283,12 +374,56 @@ def answer(where: str) -> str:
     module, _, name = where.partition(":")
     kind = getattr(import_module(f"zwidth.{module}"), name)
     rows = [("`format`", f'`"{kind.FORMAT}"`')] if getattr(kind, "FORMAT", "") else []
-    for name, one in declared(kind).items():
+    for name, one in ({} if isinstance(kind, tuple) else declared(kind)).items():
         if not one.only_shown:
             keys = one.stands_as or [one.key_for(name, "linear")]
             parts = f": {', '.join(f'`{part}`' for part in one.names)}" if one.names else ""
             rows.append((", ".join(f"`{key}`" for key in keys), _in_a_cell(one.meaning) + parts))
+    besides = kind if isinstance(kind, tuple) else getattr(kind, "BESIDES", ())
+    rows += [(f"`{keys.replace(', ', '`, `')}`", meaning.replace("|", "\\|")) for keys, meaning in besides]
     return markdown(("key", "value"), rows)
+
+
+def evidence_keys() -> str:
+    """Every object in a document that the checker reads: its entries, and the kinds that have it."""
+    names: dict[str, list[str]] = {}
+    kinds: dict[str, list[str]] = {}
+    for kind in KINDS:
+        for name, entries in _objects(fields_of(kind), "the document"):
+            names.setdefault(entries, []).append(name)
+            kinds.setdefault(entries, []).append(kind)
+    order = list(dict.fromkeys(own[0] for own in names.values()))
+    rows = [
+        (", ".join(dict.fromkeys(own)), entries, ", ".join(dict.fromkeys(kinds[entries])))
+        for entries, own in sorted(names.items(), key=lambda one: order.index(one[1][0]))
+    ]
+    return markdown(("object", "entries", "of kind"), rows)
+
+
+def _objects(field: Field, name: str) -> Iterator[tuple[str, str]]:
+    """Each object with entries besides its kind, by the name it stands under; the optional in brackets."""
+    if isinstance(field, Record):
+        own = {key: one for key, one in field.fields.items() if key not in ("format", "kind")}
+        told = {key: f"`{one.key(key, 'linear')}`" for key, one in own.items()}
+        if told:
+            yield name, ", ".join(told[key] if one.required else f"[{told[key]}]" for key, one in own.items())
+        for key, one in own.items():
+            if key != "reduced":  # a document itself
+                yield from _objects(one, f"`{key}`")
+    inside = {List: ["of"], Either: ["first", "second"]}.get(type(field), [])
+    cases = list(field.cases.values()) if isinstance(field, OneOf) else []
+    for part in [*(getattr(field, one) for one in inside), *cases]:
+        yield from _objects(part, name)
+
+
+def bench_scores() -> str:
+    """What each law is given for on the bench."""
+    rows = [(f"`{_key(name, own.unit)}`", f"{own.meaning} ({own.touch})") for name, own in SCORES.items()]
+    return markdown(("key", "meaning"), rows)
+
+
+def _key(name: str, unit: str) -> str:
+    return name if unit == "1" else f"{name}_{unit_suffix(unit)}"
 
 
 def _in_a_cell(meaning: str) -> str:
@@ -334,6 +469,7 @@ def papers_by_figure() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
+    "bench_scores": bench_scores,
     "cable_limits": cable_limits,
     "chip_costs": chip_costs,
     "connection_keys": connection_keys,
@@ -354,23 +490,31 @@ TABLES: dict[str, Callable[[], str]] = {
     "papers_by_figure": papers_by_figure,
     "plants": plants,
     "follower_options": follower_options,
+    "shared_options": shared_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,
+    "evidence_keys": evidence_keys,
     "glossary": glossary,
     "velocity_keys": velocity_keys,
 }
 
 
-def write() -> None:
-    """Write every table where the pages include it; leave an unchanged one alone."""
+def generated() -> dict[str, Callable[[], str]]:
+    """Every table, by the name of its file."""
     from zwidth.machine.servo.devices.registry import CONNECTIONS
 
-    GENERATED.mkdir(exist_ok=True)
-    for name, table in (
+    return (
         TABLES
         | {f"settings_{name}": partial(settings, name) for name in CONNECTIONS}
+        | {f"options_{name}": partial(options_of, name) for name in COMMANDS}
         | {f"answer_{name}": partial(answer, where) for name, where in ANSWERS.items()}
-    ).items():
+    )
+
+
+def write() -> None:
+    """Write every table where the pages include it; leave an unchanged one alone."""
+    GENERATED.mkdir(exist_ok=True)
+    for name, table in generated().items():
         path, text = GENERATED / f"{name}.md", table()
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")

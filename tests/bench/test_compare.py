@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from json_page import json_page
 
 import zwidth as zw
 from zwidth.loop.traces import measures as scores
@@ -86,7 +87,7 @@ def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
 
 
 def test_every_key_of_the_json_is_on_its_page(stiff):
-    page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
+    page = json_page()
     document = json.loads(stiff.to_json())
     keys = {*document, *document["laws"]["wall"]}
     assert not [key for key in keys if f"`{key}`" not in page]

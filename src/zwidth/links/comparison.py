@@ -68,6 +68,28 @@ class LinkComparison(Documented):
 
     FORMAT: ClassVar[str] = "zwidth links 1"
     PICTURE: ClassVar[str] = "plot_links"
+    BESIDES = (
+        ("link", "in words"),
+        (
+            "held_back_s",
+            "with `--hold-back`: for how long the loops of leader and follower keep each force back; "
+            "missing where they need not",
+        ),
+        ("ports", "by name, each with what follows"),
+        (
+            "outcome",
+            '`"passive"` over any link, `"theorem"`, the same on paper alone, `"active"` or `"undecided"`',
+        ),
+        ("taken_J", "what the worst of the hands that were tried take out over this link"),
+        (
+            "tracking_error_m, apart_m",
+            "how far the arms are apart: root mean square of a stroke, and a second after it",
+        ),
+        (
+            "felt_stiffness_N_per_m",
+            "of the leader when the follower is clamped; null where it does not come to rest",
+        ),
+    )
 
     rows: Mapping[str, Mapping[str, Any]]
     motion: str

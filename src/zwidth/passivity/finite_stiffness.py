@@ -73,6 +73,14 @@ class FiniteStiffnessReplay(Documented):
     """A witness replayed by the ideal hand and by hands of finite stiffness."""
 
     FORMAT = "zwidth real hand 1"
+    BESIDES = (
+        ("hands", "for each hand tried: `stiffness_N_per_m`, `bandwidth_Hz`, `energy_J`"),
+        (
+            "thresholds",
+            "the slowest hand that gains, for three masses: `mass_kg`, `stiffness_N_per_m`, "
+            "`bandwidth_Hz`; null where none does",
+        ),
+    )
 
     rounds: int = answered("how often the repeated part of the motion is done here")
     rounds_found: int = answered("the same in the witness")

@@ -51,6 +51,16 @@ class Measure(NamedTuple):
 class OverRanges:
     """What holds over the ranges of a device."""
 
+    BESIDES = (
+        ("stated", "of each number, with its unit in the key: `low`, `high`, and `why` this range"),
+        (
+            "measure_first",
+            "null, or `parameter`; `enough`, from which value on it alone settles the question, null "
+            "where none does; `times_the_stiffness`, how many times the largest stiffness grows over "
+            "its range, null where from 0",
+        ),
+    )
+
     name: str = known("of the device")
     ranges: Mapping[str, Range] = known("what is stated, by parameter of the device")
     motion: str = known('"linear" or "rotary"')

@@ -28,6 +28,44 @@ from zwidth.quantity.text import at_most, enough, in_unit, in_words
 class LinearVerdict(Verdict):
     """A verdict on a law that is H(z) inside, with its numbers."""
 
+    BESIDES = (
+        (
+            "outcome",
+            '`"passive"`, `"passive in contact"`, `"passive without encoder steps"`, `"theorem"`, '
+            '`"active"` or `"undecided"`',
+        ),
+        ("claim", "in a sentence"),
+        ("scope, assumptions", "what the outcome is about; what it covers and takes for granted, in words"),
+        ("max_gain", "only for a law without a stiffness of its own: the largest passive factor on H(z)"),
+        (
+            "actuator",
+            "how close it is to the ideal: list of `name`, which check; `ok`, null where a number is "
+            "not known; `text`",
+        ),
+        ("certificate", "the proof, if passive"),
+        (
+            "violation",
+            "if active, or at the worst corner of an interval: the proof that the linear criterion is"
+            " violated",
+        ),
+        (
+            "witness",
+            "likewise the motion that takes energy out; missing where there is a `violation` and no "
+            "motion that was found is short enough to be written down",
+        ),
+        (
+            "hand_motion",
+            "of a device with a transmission: `positions_m` at the ends of the `pieces` of each "
+            "sample, and `energy_J`, found in the simulator; no evidence, the checker lists it as "
+            "told",
+        ),
+        (
+            "worst_hand",
+            "where the available storage settled something: `format`, `outcome`, `claim`, "
+            "`assumptions`, in a saved file the `certificate`",
+        ),
+    )
+
     decision: Decision = known("what is known of the loop, at the worst corner where intervals were given")
     box: Loop | None = known("the loop with its intervals; None where it was not kept", default=None)
     asked: Contact = known("of which contact", default="made and broken")

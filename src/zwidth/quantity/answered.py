@@ -11,7 +11,8 @@
         def share(self) -> float: ...
 
 Its plain data, the rows of its report, the tables of docs/json.md and its parameters in docs/api.md are made
-of that.  Fields come first, then what is computed, in the order in which they stand.
+of that.  Fields come first, then what is computed, in the order in which they stand.  What a class puts into
+its plain data besides stands in its `BESIDES`, by key: the same tables have it.
 """
 
 from __future__ import annotations

@@ -248,6 +248,44 @@ def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]
     return pair_of(arms, words)
 
 
+BESIDES = (
+    ("device, environment, operator, amplifier, timing, motion", "what was simulated, in words"),
+    (
+        "sample_period_s, delay_s, resolution_m, encoder_phase_counts, mass_kg, damping_N_s_per_m, "
+        "coulomb_friction_N, stiction_N, force_limit_N",
+        "the device",
+    ),
+    (
+        "transmission_stiffness_N_per_m, transmission_damping_N_s_per_m, transmission_handle_mass_kg,"
+        " transmission_handle_damping_N_s_per_m, transmission_handle_coulomb_friction_N, encoder",
+        "of a device with a transmission",
+    ),
+    ("hand_mass_kg, hand_stiffness_N_per_m, hand_damping_N_s_per_m", "the hand"),
+    (
+        "deepest_position_m, peak_actuator_force_N, peak_hand_force_N, chatter_N, energy_extracted_J,"
+        " contacts, stops, last_swing_m",
+        "what the touch was like",
+    ),
+    (
+        "stored_at_start_J",
+        "the most that the loop had stored at the start; or `stored_at_start_unknown`, why no bound is known",
+    ),
+    (
+        "energy",
+        "change of each over the touch (`hand_work_J`, `actuator_work_J`, `kinetic_energy_J`, "
+        "`viscous_loss_J`, `coulomb_loss_J`; of the hand `hand_source_work_J`, `hand_kinetic_energy_J`, "
+        "`hand_spring_energy_J`, `hand_damper_loss_J`), "
+        "`energy_got_out_J`, `held_at_start_J` and what is beyond it, `energy_extracted_J` (both null where "
+        "no bound is known), `energy_moved_J`, and by how much the two balances do not add up:"
+        " `largest_residual_J`, `largest_hand_residual_J`",
+    ),
+    ("interrupted_at_s", "only after Ctrl-C"),
+    ("diverged_at_s", "only if the motion grew beyond 10¹²⁰: the trace ends there"),
+    ("zwidth_version", "that simulated"),
+)
+"""What stands in the summary of a touch, by key: the documentation's table."""
+
+
 def pair_measures(trace: AnyTrace) -> dict[str, Any]:
     """What a trace of a pair is measured by, a unit in every key."""
     from zwidth.loop.energy import PairLedger

@@ -165,6 +165,40 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
     not say, and `confidence` how often such a finding is right, among faults simulated as the weights were
     learnt from."""
 
+    BESIDES = (
+        (
+            "swing_m, swing_counts",
+            "where something vibrates, from one side to the other; in encoder counts, null where the "
+            "step is not known",
+        ),
+        (
+            "supplied_J, friction_takes_J",
+            "of the energy in a cycle the share of each cause; what the device's own friction takes",
+        ),
+        ("sample_period_s, delay_s", "of the loop; of the force, null where the file does not show it"),
+        (
+            "law",
+            "as the file shows it: its stiffness and virtual damping, `window_samples` of the "
+            "velocity, its compensation of friction, `unexplained`, the part of the force that is "
+            "none of these",
+        ),
+        (
+            "stated",
+            "only with a law that was stated: `holds`, whether the force is taken as that law's; "
+            "`gain`, how many times the law's it is; `lag_s`; `unexplained`; `text`, how it fits, and"
+            " what `zwidth check` says to the loop as stated",
+        ),
+        ("command", "that checks the change, where one line holds it"),
+        (
+            "leader, follower",
+            "of two arms, in the place of `swing`, `delay` and `law`: `amplitude_m`; `delay_s` from "
+            "its reading to its force, null where the file does not show it; `law`, null where its "
+            "force does not follow the arms: `stiffness_…`, `virtual_damping_…` against the other "
+            "arm, `local_virtual_damping_…`, `compensation_…` of friction, `link_delay_s`, by how "
+            "much the other's reading is older than its own, `unexplained`",
+        ),
+    )
+
     stated: tuple[str, ...] = answered(
         "how the law as stated fits the force, and what `check` says to that loop; empty without one",
         default=(),

@@ -68,6 +68,30 @@ class Emitted(Result):
     """
 
     FORMAT = "zwidth emitted law 1"
+    BESIDES = (
+        (
+            "prefix, target, number",
+            "what names begin with, the machine, and its numbers: `double`, `float` or `fixed`",
+        ),
+        ("outcome", "of the law in these numbers"),
+        ("statement", "what the numbers do to the verdict, in a sentence or two"),
+        (
+            "error_N",
+            "ε, by which the force is off at most: half a step of the converter and the rounding; "
+            "null where no bound is known",
+        ),
+        ("rounding_N", "the rounding in it"),
+        (
+            "stiffness_cost_N_per_m",
+            "by how much the largest passive stiffness is less; null where the environment has none",
+        ),
+        ("certificate_sha256", "of `PREFIX.certificate.json`; it stands in the header"),
+        (
+            "files",
+            "SHA-256 by file name; the sketch is `PREFIX.ino` here, and called as its folder on the disk",
+        ),
+        ("verdict", "of the device with ε less Coulomb friction"),
+    )
 
     prefix: str
     target: str

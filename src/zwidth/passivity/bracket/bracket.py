@@ -33,6 +33,15 @@ class Bracket(Result):
 
     FORMAT = "zwidth limit 1"
     PICTURE = "limit_figure"
+    BESIDES = (
+        (
+            "proved_passive_N_per_m, proved_active_N_per_m",
+            "the two sides, in the unit of the parameter; null where none was found",
+        ),
+        ("every_hand_N_per_m", "the two sides for hands without bounds, as far as they are known"),
+        ("certificate", "the proof at the one value; a `storage` certificate only in a saved file"),
+        ("violation, witness", "the violation and the motion at the other, or one of them"),
+    )
 
     parameter: str = answered('which: `"environment.stiffness"`, `"device.damping"`, …')
     unit: str = known("its SI unit")

@@ -121,6 +121,26 @@ class PairVerdict(PassivityAnswer):
 
     FORMAT: ClassVar[str] = "zwidth pair 1"
     PICTURE: ClassVar[str] = "plot_pair"
+    BESIDES = (
+        (
+            "power_ratio",
+            "how often the work of the follower's hand counts, K_l/K_f; 1 where both springs are the same",
+        ),
+        (
+            "largest_compensation",
+            "only where friction is compensated: how much of it is passive, as a multiple of F and C "
+            "on both sides; null if none is",
+        ),
+        (
+            "compensation_takes",
+            "only where friction is compensated: `leader` and `follower`, each with "
+            "`coulomb_friction_N` and `damping_N_s_per_m` that it takes at most",
+        ),
+        (
+            "certificate, violation, witness",
+            "the proof; the violation and the motion of both hands, or one of them",
+        ),
+    )
 
     pair: Pair = known("what was asked")
     criterion: PairCriterion = known("what decided it, encoders and Coulomb friction aside")

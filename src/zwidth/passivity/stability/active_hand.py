@@ -57,6 +57,13 @@ class ToleratedActivity(Result):
     """How much negative damping a hand may show below a frequency, proved and refuted."""
 
     FORMAT = "zwidth activity 1"
+    BESIDES = (
+        (
+            "contact_kept, contact_broken",
+            "`activity_N_s_per_m`, the largest that is proved or null, its `scope`, and its "
+            "`certificate` of kind `active hand`",
+        ),
+    )
 
     claim: str = answered("in words")
     scope: Scope = known("what the first number is about")

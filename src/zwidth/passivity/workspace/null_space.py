@@ -52,6 +52,15 @@ class NullSpace(PassivityAnswer):
 
     FORMAT = "zwidth null space 1"
     PICTURE = "null_space_figure"
+    BESIDES = (
+        ("fast_motion", "null, or a small one to and fro at the rest that takes energy out"),
+        (
+            "slow_loop",
+            "null, or `energy_J`, `friction_takes_J`, `samples`, `largest_force_N`, `imposed_by` and "
+            "$c$, $a$, $b$ of $q_k=c+a\\cos(2\\pi k/N)+b\\sin(2\\pi k/N)$ as `centre_rad`, `cosine_rad`, "
+            "`sine_rad`",
+        ),
+    )
     witness = None  # its motions are reckoned in doubles, and no evidence
 
     question: Question = answered(

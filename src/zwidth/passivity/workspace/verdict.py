@@ -47,6 +47,57 @@ class Workspace(PassivityAnswer):
 
     FORMAT = "zwidth workspace 1"
     PICTURE = "workspace_figure"
+    BESIDES = (
+        (
+            "outcome, claim",
+            '`"passive"`, `"passive without encoder steps"`, `"theorem"`, `"active"` or '
+            '`"undecided"`; in words',
+        ),
+        ("arm, wall", "what was asked about; K and B as matrices"),
+        ("joint_damping_source", "of damping that comes from a description: what is to be known of it"),
+        (
+            "joint_damping_N_m_s_rad",
+            "a list, of each joint, or the matrix of joints that damp each other: N·m·s/rad, N·s/m of"
+            " joints that slide, N·s/rad between the two",
+        ),
+        (
+            "joint_damping_that_motors_feel_N_m_s_rad",
+            "of joints that give way, the same with what is there behind their motors whatever the links do",
+        ),
+        (
+            "largest_forces_N, largest_moments_N_m",
+            "lists of one or none: up to which force of the wall, and in pose which moment, the claim"
+            " goes; empty: any",
+        ),
+        ("smallest_margin_N_s_per_m", "at the hand, over all points; null of a wall in pose"),
+        (
+            "smallest_margin_in_joints_N_m_s_per_rad",
+            "smallest eigenvalue of the joints' damping less need, over all points",
+        ),
+        (
+            "encoder_steps",
+            "null where there are none or no bound is known; of each joint `friction_N_m` that covers"
+            " them before next to no force, and `friction_per_force_m` for each newton, in pose "
+            "`friction_per_moment`; `covered_force_N`, in pose with `covered_moment_N_m`; "
+            "`refuted_force_N` with its `motion`",
+        ),
+        ("wall_leaves_out", "of a wall from a file of ros2_control: what of that controller is not in it"),
+        (
+            "too_little",
+            "of the three additions, `to_all_N_m_s_per_rad`, `to_one_N_m_s_per_rad`, "
+            "`least_N_m_s_per_rad`, of damping with which, or with less, the condition fails at a "
+            "point",
+        ),
+        ("proved_part", "part of the cells that are proved"),
+        (
+            "motion",
+            'a closed one that takes energy out: `energy_J`, `encoder`, `imposed_by` (`"end"` or '
+            '`"links"`), `largest_force_N`, `joints_rad`, `positions_m`, `wall_rest_m`; in pose '
+            "`rotations_rad` and `wall_rest_rotation_rad`, 2 sin(φ/2) along the axis from the "
+            "orientation of rest, in the plane the angle",
+        ),
+        ("certificate", "if passive, a proof"),
+    )
     witness = None  # its motion is reckoned in doubles, and no evidence
 
     outcome: Outcome = known("which of these")

@@ -54,6 +54,29 @@ class LawComparison(Documented):
     """
 
     FORMAT = "zwidth laws 1"
+    BESIDES = (
+        ("advice", "what to do, in a paragraph"),
+        ("touched_at_radius_m", "of a device that turns: how far from its axis"),
+        (
+            "laws",
+            "by the name of each, in the order in which they were compared, with the `scope` and what"
+            " follows",
+        ),
+        ("status", '`"passive"`, `"theorem"`, `"active"` or `"undecided"`'),
+        (
+            "proof, evidence",
+            'what stands behind the status, `"certificate"`, `"paper"` (no certificate), `"motion"` '
+            'or `"none"`; why, in a sentence',
+        ),
+        ("withheld", "promises of the law that this device does not let it keep, and why"),
+        (
+            "stiffness_jnds",
+            "how far what is felt at the press is from what is wanted, in just-noticeable "
+            "differences; below 0 it is softer",
+        ),
+        ("gain_J", "taken out by the worst motion in a round; below 0 it cost the hand so much"),
+        ("step_time_s", "of a sample in the simulator"),
+    )
 
     scores: xr.Dataset
     attacks: Mapping[str, Attack]

@@ -34,6 +34,41 @@ BINS = 6
 class IdentifiedNumbers:
     """A device as a log shows it."""
 
+    BESIDES = (
+        ("format", '`"zwidth identification 1"`'),
+        ("log", "`samples`, `runs`, `duration_s`, `channels`; only from the command line"),
+        ("confidence", "of the intervals"),
+        (
+            "mass_kg, damping_N_s_per_m, coulomb_friction_N, slow_N, spring_N_per_m, force_lag_s",
+            "what was fitted, `slow` what friction is more at rest: `value`, `standard_error`, "
+            "`shift` (what the method may be off), `degrees_of_freedom`, `interval`",
+        ),
+        (
+            "damping_inward_N_s_per_m, damping_outward_N_s_per_m",
+            "of motion into the wall, and out of it, likewise; walls rest on the lesser",
+        ),
+        (
+            "seen_inward_m_per_s, seen_outward_m_per_s",
+            "speed that 32 strokes, or a quarter of them, went beyond: friction at higher speeds is "
+            "not known",
+        ),
+        (
+            "slope_inward_N_s_per_m, slope_outward_N_s_per_m",
+            "slope of friction at the smaller of the two, likewise; no more damping is promised than "
+            "its lower end",
+        ),
+        (
+            "stiffest_by_damping_N_per_m, stiffest_by_coulomb_friction_N_per_m",
+            "2b/T and 2f_c/Δ: `value`, `interval`",
+        ),
+        ("advice, assumptions", "how to know it better; what the numbers take for granted"),
+        (
+            "passive_for, check",
+            "with an environment: for how much of what the data allow it is passive; the verdict at "
+            "the confidence",
+        ),
+    )
+
     estimates: Mapping[str, Estimate] = answered(
         "by parameter: damping, coulomb_friction, mass unless it was given, and what else was fitted: spring "
         "[N/m], force_lag [s], and slow, what friction is more at rest [N]; N·m and rad if rotary",

@@ -54,6 +54,39 @@ class TissueTest(Documented):
         the file holds one.
     """
 
+    BESIDES = (
+        ("kind, seen_as", "the test as it was fitted; as the data look"),
+        ("samples, duration_s", "that were fitted"),
+        ("model, not_told_apart", "the one that is taken; others that this test does not tell from it"),
+        ("left_over_is_noise", "false where none of the models is the tissue to within the noise"),
+        (
+            "best",
+            "the fit that is taken: `parameters`, each with `value`, `unit` and `interval_95`, and its own "
+            "numbers",
+        ),
+        (
+            "models",
+            "of each that was fitted, `model`, `aicc_above` the smallest, `rms`, `noise_memory_s` (0: white)",
+        ),
+        ("doubts, findings", "what to know before trusting the numbers; what was odd in the file"),
+        (
+            "trial, trials",
+            "the number of this one; of a file that holds several, the same model fitted to each by "
+            "itself, as in `best`, or `not_fitted` with the reason",
+        ),
+        (
+            "slowest_relaxation_time_s",
+            "null, or of a test that is shorter: `fitted`, `at_least` and `at_most` (95 % each), null"
+            " where there is no bound",
+        ),
+        (
+            "check, largest_gain, check_of_intervals",
+            "with a device: the verdict on the tissue; `proved_passive` and `proved_active`, times "
+            "the tissue; the outcome for all that the 95 % intervals allow, null where it was not "
+            "asked",
+        ),
+    )
+
     source: str
     test: History
     seen_as: Kind

@@ -76,6 +76,24 @@ class HeldVerdict(PassivityAnswer):
 
     FORMAT: ClassVar[str] = "zwidth held pair 1"
     PICTURE: ClassVar[str] = "plot_held_pair"
+    BESIDES = (
+        ("held", "object with `arm` and `hand`, in words"),
+        (
+            "largest_stiffness_N_per_m_with_any_such_hand",
+            "with anything passive beside a damper as large as the hand's",
+        ),
+        ("largest_stiffness_N_per_m_with_two_hands", "with a hand that does what it likes"),
+        (
+            "required",
+            "object with the free arm: its `damping_N_s_per_m`, null if none is known to be enough, "
+            "and `coulomb_friction_N` for the steps of both encoders, null if none is",
+        ),
+        (
+            "certificate, violation, witness",
+            "the proof, of kind `held pair`, or `pair` of the arms with the hand's damping; the "
+            "frequency at which a motion gains, and one that does, if it is short enough",
+        ),
+    )
 
     question: HeldPair = known("the pair, which arm is held, and by what")
     certificate: PairCertificate | HeldCertificate | None = None
