@@ -3,7 +3,8 @@
 import pytest
 
 import zwidth as zw
-from zwidth.model.device.worst_end import at_worst_end
+from zwidth.cli.decision import of_one_value
+from zwidth.model.specification.read import Specification
 
 
 @pytest.mark.parametrize(
@@ -29,4 +30,5 @@ def test_the_limit_is_that_of_the_worst_end(run):
     found = run(f"{line} --damping '0.2 .. 0.3' --delay '0 .. 1 ms'").json
     assert found == run(f"{line} --damping 0.2 --delay '1 ms'").json
     device = zw.Device(damping=0.2, sample_period=0.001, mass=(1, 2))
-    assert at_worst_end(device) == (device, "")
+    loop = Specification(device, zw.Wall(stiffness=100))
+    assert of_one_value(loop) is loop

@@ -49,15 +49,30 @@ def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
     return Asked(loop, device_table, environment_table, tables.get("law"))
 
 
+_WORST = {
+    **dict.fromkeys(("delay", "sample_period", "resolution", "force_resolution"), 1),
+    **dict.fromkeys(("damping", "coulomb_friction", "force_limit"), 0),
+}
+"""By parameter, at which end of an interval most energy leaks in, or least is lost.  Of a mass it is neither."""
+
+
 def of_one_value(loop: Specification) -> Specification:
     """The loop with single values in the place of intervals, and a line to people about it."""
     from zwidth.cli.output import print_message
-    from zwidth.model.device.worst_end import at_worst_end
+    from zwidth.quantity.exact import Exact, Interval, ends
+    from zwidth.quantity.text import in_words, shown
 
-    device, told = at_worst_end(loop.device)
-    if told:
-        print_message(told)
-    return replace(loop, device=device)
+    device = loop.device
+    taken = {
+        key: Exact(ends(given)[_WORST[key]])
+        for key, given in device.parameters().items()
+        if key in _WORST and isinstance(given, Interval)
+    }
+    if not taken:
+        return loop
+    told = ", ".join(f"{in_words(key)} {shown(value, device.unit(key))}" for key, value in taken.items())
+    print_message(f"of an interval the worst end is taken, for one value is needed: {told}")
+    return replace(loop, device=device.replace(**taken))
 
 
 def exit_status(outcome: str) -> int:
