@@ -53,7 +53,7 @@ _WORST = {
     **dict.fromkeys(("delay", "sample_period", "resolution", "force_resolution"), 1),
     **dict.fromkeys(("damping", "coulomb_friction", "force_limit"), 0),
 }
-"""By parameter, at which end of an interval most energy leaks in, or least is lost.  Of a mass it is neither."""
+"""At which end of an interval most energy leaks in, or least is lost.  Of a mass it is neither."""
 
 
 def of_one_value(loop: Specification) -> Specification:

@@ -1,6 +1,6 @@
 """The least that friction takes between two points: lemmas of Abbott & Okamura (2005), appendix.
 
-docs/theory/available-storage.md proves them; here random motions are added up in fractions, and by quadrature.
+docs/theory/available-storage.md proves them; here random motions are added in fractions and by quadrature.
 """
 
 from __future__ import annotations
