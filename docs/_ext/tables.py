@@ -22,6 +22,7 @@ from zwidth.cli.options import (
 from zwidth.cli.parsing import Parameter
 from zwidth.data.gains.plant import plants as published_plants
 from zwidth.model.kind import Kind
+from zwidth.model.operator import OPERATORS
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, all_keys
@@ -312,6 +313,19 @@ def _pretty(text: str) -> str:
     return text.replace("*", "·").replace("^2", "²")
 
 
+def hand_numbers() -> str:
+    """The numbers of every hand that has a name."""
+    rows = []
+    for name, kind in OPERATORS.items():
+        hand = kind()
+        numbers = [
+            f"`{key}` {getattr(hand, key):.6g} {_pretty(q.unit_for(kind.motion))}"
+            for key, q in kind.parameters().items()
+        ]
+        rows.append((f"`{name}`", "; ".join(numbers) or "none"))
+    return markdown(("hand", "numbers"), rows)
+
+
 def lines_to_trust() -> str:
     """How many lines of the checker stand behind each kind of document."""
     head = ("kind of document", "files", "lines", "needs")
@@ -357,6 +371,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "simulation_options": simulation_options,
     "environment_types": environment_types,
     "glossary": glossary,
+    "hand_numbers": hand_numbers,
     "velocity_keys": velocity_keys,
 }
 

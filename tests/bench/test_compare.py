@@ -68,8 +68,7 @@ def test_the_bench_says_what_check_says(stiff):
 def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
     page = (Path(__file__).parents[2] / "docs" / "laws.md").read_text(encoding="utf-8")
     table = page[page.index("| law | status | felt") :].split("\n\n")[0].splitlines()[2:]
-    variables = {"static_stiffness": 1, "tap_chatter": 1e3, "bounces": 1, "settling_time": 1e3}
-    variables |= {"peak_force": 1, "generated_energy": 1e3, "dowel_energy": 1e3, "gain": 1e3}
+    variables = {"static_stiffness": 1, "generated_energy": 1e3, "dowel_energy": 1e3, "gain": 1e3}
     assert len(table) >= 18
     for line in table:
         name, status, *cells = (cell.strip(" `") for cell in line.strip("|").split("|"))
@@ -79,7 +78,7 @@ def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
             value = float(one[variable]) * factor
             if cell == "none":
                 assert value <= 0
-            elif cell in ("–", "never"):
+            elif cell == "–":
                 assert not np.isfinite(value)
             else:
                 assert float(cell) == pytest.approx(value, rel=0.006, abs=6e-4), (name, variable)
