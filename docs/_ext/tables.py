@@ -314,7 +314,7 @@ def _pretty(text: str) -> str:
 
 
 def hand_numbers() -> str:
-    """The numbers of every hand that has a name."""
+    """What every hand that has a name does, and its numbers."""
     rows = []
     for name, kind in OPERATORS.items():
         hand = kind()
@@ -322,8 +322,9 @@ def hand_numbers() -> str:
             f"`{key}` {getattr(hand, key):.6g} {_pretty(q.unit_for(kind.motion))}"
             for key, q in kind.parameters().items()
         ]
-        rows.append((f"`{name}`", "; ".join(numbers) or "none"))
-    return markdown(("hand", "numbers"), rows)
+        does = (kind.__doc__ or "").partition("\n")[0]
+        rows.append((f"`{name}`", does, "; ".join(numbers) or "none"))
+    return markdown(("hand", "what it does", "numbers"), rows)
 
 
 def lines_to_trust() -> str:
