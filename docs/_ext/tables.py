@@ -30,6 +30,7 @@ from zwidth.cli.options import (
 from zwidth.cli.parsing import Helping, Parameter
 from zwidth.data.gains.plant import plants as published_plants
 from zwidth.model.kind import Kind
+from zwidth.model.operator import OPERATORS
 from zwidth.model.rendering import ESTIMATORS, LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, all_keys
@@ -447,6 +448,20 @@ def _pretty(text: str) -> str:
     return text.replace("*", "·").replace("^2", "²")
 
 
+def hand_numbers() -> str:
+    """What every hand that has a name does, and its numbers."""
+    rows = []
+    for name, kind in OPERATORS.items():
+        hand = kind()
+        numbers = [
+            f"`{key}` {getattr(hand, key):.6g} {_pretty(q.unit_for(kind.motion))}"
+            for key, q in kind.parameters().items()
+        ]
+        does = (kind.__doc__ or "").partition("\n")[0]
+        rows.append((f"`{name}`", does, "; ".join(numbers) or "none"))
+    return markdown(("hand", "what it does", "numbers"), rows)
+
+
 def lines_to_trust() -> str:
     """How many lines of the checker stand behind each kind of document."""
     head = ("kind of document", "files", "lines", "needs")
@@ -495,6 +510,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "environment_types": environment_types,
     "evidence_keys": evidence_keys,
     "glossary": glossary,
+    "hand_numbers": hand_numbers,
     "velocity_keys": velocity_keys,
 }
 

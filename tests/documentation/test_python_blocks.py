@@ -29,10 +29,8 @@ NOT_RUN = {
     "docs/doctor.md": "it measures for seconds; tests/servo runs such",
     "docs/serve.md 1": "two seconds of real time, in which a busy machine may be late",
     "docs/arms.md 2": "it reads a robot description of one's own",
-    "docs/play.md 1": RECORDING,
     "docs/json.md 1": "it reads documents that were written before",
     "docs/json.md 2": ELSEWHERE,
-    "docs/map.md 2": "two maps in full size take a minute",
 }
 """Pages, or the n-th block of one, and why they are not run: their syntax is read all the same."""
 
