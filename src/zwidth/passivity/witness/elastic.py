@@ -62,9 +62,7 @@ class ElasticViolation(Evidence):
     def describe(self) -> str:
         """What is violated, in words."""
         if self.frequency is not None:
-            return (
-                f"at {self.frequency:.6g} Hz the linear criterion of motor, transmission and hand is violated"
-            )
+            return f"a motion at {self.frequency:.6g} Hz gains"
         if self.refutation.reason == "unstable":
             return "while the hand holds still, the motor swings more and more on its transmission"
         return "pressed slowly, the law pulls the hand in"

@@ -83,7 +83,7 @@ class Violation(Evidence):
     def describe(self) -> str:
         """What is violated, in words."""
         if self.frequency is not None:
-            return f"at {self.frequency:.6g} Hz the linear criterion is violated"
+            return f"a motion at {self.frequency:.6g} Hz gains"
         if self.refutation.reason == "negative static stiffness":
             return f"pressed slowly, the law pulls the hand in ({self._static()})"
         return "the law is unstable by itself"
