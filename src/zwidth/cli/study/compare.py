@@ -149,7 +149,7 @@ def _chosen(
     for name in (part.strip() for part in typed.split(",")):
         if name not in laws:
             raise InputError(
-                f"there is no such law for this device, {quoted(name)}; {suggestion(name, list(laws))}"
+                f"there is no law {quoted(name)} for this device; {suggestion(name, list(laws))}"
             )
         chosen[name] = laws[name]
     return {**chosen, **yours}
