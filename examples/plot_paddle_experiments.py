@@ -258,7 +258,7 @@ for i, j in np.ndindex(soon.shape):
 # in the other, for (F + f_c)/Δ, and the stiffnesses that were tried, since from 80 to 90 N/m is 12 %.
 #
 # Friction that bends is not in the model of the bound: with it 2f_c/Δ is no proof of
-# passivity any more, since the smallest motions lose nothing.  See :doc:`/theory/papers`.
+# passivity any more, since the smallest motions lose nothing.  See :doc:`/theory`.
 
 more = 0.1 * limits[1] * 2.24e-3
 print(f"10 % of {limits[1]:.0f} N/m is {1e3 * more:.0f} mN of the push; from 80 to 90 N/m is {100 / 8:.0f} %")

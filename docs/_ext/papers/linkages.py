@@ -86,8 +86,8 @@ def _joints() -> list[Row]:
             f"two joints: {answers[0]:.6f} of what a hand feels; three joints in a plane: {answers[1]:.3f} "
             "of it",
             close(answers[0], 1, 1e-9) and close(answers[1], 1, 1e-9),
-            "of a redundant arm it promises too much: [(Jδ_m⁻¹Jᵀ)⁻¹](papers.md#joint-damping-as-a-matrix) "
-            "is felt"),
+            "of a redundant arm it promises too much: "
+            "[(Jδ_m⁻¹Jᵀ)⁻¹](theory/arms.md#from-the-joints-to-the-hand) is felt"),
     ]  # fmt: skip
 
 

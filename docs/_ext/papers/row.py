@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-PAGE = "../gallery/plot_"
+PAGE = "gallery/plot_"
 """Where the gallery's pages are, seen from `docs/theory/`."""
 
 

@@ -63,7 +63,7 @@ def _buzz() -> list[Row]:
             min(found[240][0], found[120][0]) > 100 and found[80][0] == 0 and found[240][1] > found[120][1]),
         row("Fig. 11", "90 N/m is about the boundary: with effort it buzzes",
             f"90 N/m: {found[90][0]} changes of force per second; {zw.check(COARSE, zw.Wall(90)).outcome}",
-            found[90][0] > 0, f"{why}: [what could explain it](papers.md#the-buzz-boundary-at-3-ms)"),
+            found[90][0] > 0, f"{why}: [what could explain it](theory.md#the-buzz-boundary-at-3-ms)"),
     ]  # fmt: skip
 
 
@@ -90,7 +90,7 @@ def _decoupled() -> list[Row]:
             f"dowel: from {limits[0]:.0f} to {limits[1]:.0f} N/m, {change:.0f} %", change < 10),
         row("section IV-C", "at 3 ms the boundary of the buzz moves by about 10 %",
             f"a push of 0.135 N: from {buzz[0]:g} N/m at 1 ms, {buzz[1]:g} N/m at 3 ms", buzz[0] != buzz[1],
-            "[what could explain it](papers.md#the-buzz-boundary-at-3-ms)"),
+            "[what could explain it](theory.md#the-buzz-boundary-at-3-ms)"),
         row("section IV-C", "at 3 ms the buzz is of lower frequency and larger",
             f"{after[0]} changes of force per second and {after[1]:.2g} µm, at 1 ms {before[0]} and "
             f"{before[1]:.2g} µm", after[0] < before[0] and after[1] > before[1]),

@@ -163,5 +163,5 @@ def _stretch() -> Row:
         "friction", f"rest for half of the time: {share:.6f} of the one, {lost[0][1] / lost[1][1]:.6f} of "
         "the other",
         close(share, 0.5, 1e-6) and close(*(c for _, c in lost), 1e-6),
-        "[with two words changed](papers.md#the-two-lemmas-on-least-losses)",
+        "[with two words changed](theory/available-storage.md#the-least-that-friction-takes)",
     )  # fmt: skip
