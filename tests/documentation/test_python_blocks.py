@@ -24,7 +24,7 @@ def _all(pages: str, reason: str) -> dict[str, str]:
 NOT_RUN = {
     "README.md": ELSEWHERE,
     **_all("gain-files limit links quickstart scenes tissue", ELSEWHERE),
-    **_all("finger identification logs recording", RECORDING),
+    **_all("identification logs recording", RECORDING),
     **_all("explore firmware live", HARDWARE),
     "docs/doctor.md": "it measures for seconds; tests/servo runs such",
     "docs/serve.md 1": "two seconds of real time, in which a busy machine may be late",
