@@ -1,7 +1,6 @@
 """The bench: scores from traces whose value is known, its verdicts, its faces."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
