@@ -151,10 +151,7 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     return f"there is no option {plain(name)}; {hint}"
 
 
-_GAINS = {
-    "--kp": ("--stiffness",),
-    "--kd": ("--virtual-damping", "--local-damping"),
-}
+_GAINS = {"--kp": ("--stiffness",), "--kd": ("--virtual-damping", "--local-damping")}
 """What the gains of a controller are called here."""
 
 

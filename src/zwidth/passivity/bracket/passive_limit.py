@@ -21,9 +21,8 @@ from zwidth.passivity.scope import Contact, as_contact
 from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
 from zwidth.passivity.storage.chain_table import DoesNotClose
-from zwidth.passivity.storage.domain import bounds_given
 from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.storage.hand_bounds import slow_hands
+from zwidth.passivity.storage.hand_bounds import bounds_given, slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit

@@ -16,7 +16,6 @@ from zwidth.model.device.device import Device
 from zwidth.model.device.friction import FrictionCurve
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.units import parse_number
 
 RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
 """The same for a law with a part that relaxes, by samples of delay."""
@@ -157,14 +156,6 @@ def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
     remembered = min(law.memory + losses.delay, _LONG)  # a power of millions is never worked out
     states = int(domain.cells * (2 * domain.reach + 1) ** remembered)
     return states * domain.cells if law.relaxing is not None else states
-
-
-def bounds_given(device: Device, penetration: object, speed: object) -> tuple[Exact | None, Exact | None]:
-    """Bounds on the hand in SI, as numbers or as texts with a unit; None where there is none."""
-    return (
-        None if penetration is None else parse_number(penetration, device.unit("position"), "penetration"),
-        None if speed is None else parse_number(speed, device.unit("velocity"), "speed"),
-    )
 
 
 def counts_of(name: str, value: RealLike | None, unit: Fraction) -> Fraction:

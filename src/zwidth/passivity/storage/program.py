@@ -22,18 +22,10 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
 from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
-from zwidth.passivity.storage.domain import (
-    Domain,
-    Losses,
-    bounds_given,
-    domain_for,
-    losses_of,
-    states_of,
-    too_large,
-)
+from zwidth.passivity.storage.domain import Domain, Losses, domain_for, losses_of, states_of, too_large
 from zwidth.passivity.storage.gain import Gain, gain
 from zwidth.passivity.storage.grid import Approximation, Grid
-from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
+from zwidth.passivity.storage.hand_bounds import HandBounds, bounds_given, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction, has_cells, prove_on_cells
