@@ -438,6 +438,17 @@ def test_names_that_are_found_and_not_offered_stand_where_they_belong():
     assert isinstance(zw.check(paddle, zw.Wall(stiffness=9000)).witness, zw.Witness)
 
 
+def test_type_checkers_see_every_public_name():
+    """``import a as b`` in a stub exports nothing; ``b = a`` below it does."""
+    for stub in (ROOT / "src").rglob("__init__.pyi"):
+        for line in ast.walk(ast.parse(stub.read_text(encoding="utf-8"))):
+            if isinstance(line, ast.ImportFrom):
+                renamed = [name for name in line.names if name.asname not in (None, name.name)]
+                assert not renamed, ast.unparse(line)
+    assert {"limit", "plan", "operators"} <= {*dir(zw)}
+    assert not {"passive_limit", "plan_identification", "operator"} & {*dir(zw)}
+
+
 def test_no_module_bears_the_name_of_what_its_package_offers():
     """Whoever imports the module would put it in the place of a function that is found when asked for."""
     for stub in (ROOT / "src").rglob("__init__.pyi"):

@@ -5,7 +5,7 @@ from zwidth.data import identification as identification
 from zwidth.data import tissue as tissue
 from zwidth.data.diagnosis import diagnose as diagnose
 from zwidth.data.diagnosis import diagnose_pair as diagnose_pair
-from zwidth.data.identification.device.plan import plan_identification as plan
+from zwidth.data.identification.device.plan import plan_identification
 from zwidth.data.logs import read_log as read_log
 from zwidth.errors import InputError as InputError
 from zwidth.loop import traces as traces
@@ -15,7 +15,7 @@ from zwidth.machine import servo as servo
 from zwidth.machine.firmware.emit import emit as emit
 from zwidth.machine.servo.serving import serve as serve
 from zwidth.model import arms as arms
-from zwidth.model import operator as operators
+from zwidth.model import operator
 from zwidth.model import rendering as rendering
 from zwidth.model import samples as samples
 from zwidth.model import scene as scene
@@ -53,21 +53,27 @@ from zwidth.show.explorer.notebook import explore as explore
 from zwidth.show.with_bar import available_storage as available_storage
 from zwidth.show.with_bar import compare as compare
 from zwidth.show.with_bar import identify as identify
-from zwidth.show.with_bar import passive_limit as limit
+from zwidth.show.with_bar import passive_limit
 from zwidth.show.with_bar import simulate as simulate
 from zwidth.study import maps as maps
 from zwidth.study.maps import z_width as z_width
 from zwidth.study.sweeps.run import sweep as sweep
+
+plan = plan_identification
+operators = operator
+limit = passive_limit
 
 if True:  # found as ever; offered where they belong, such as gains.read_gains
     from zwidth.data.gains import check_gains as check_gains
     from zwidth.data.gains import read_gains as read_gains
     from zwidth.data.logs import Log as Log
     from zwidth.model.device import Transmission as Transmission
-    from zwidth.model.device import amplifier as amplifiers
+    from zwidth.model.device import amplifier
     from zwidth.model.rendering import FrictionCompensation as FrictionCompensation
     from zwidth.passivity.certificate import Certificate as Certificate
     from zwidth.passivity.witness.witness import Witness as Witness
     from zwidth.passivity.workspace import stiffness_over_postures as stiffness_over_postures
     from zwidth.quantity import Exact as Exact
     from zwidth.study.sweeps.files import load_sweep as load_sweep
+
+    amplifiers = amplifier

@@ -28,7 +28,8 @@ def above(name: str) -> Any:
 def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """`__getattr__`, `__dir__` and `__all__` of a package, from its `__init__.pyi`.
 
-    Each line of the stub is ``from module import name as public_name``; what is no name of the module is a
+    Each line of the stub is ``from module import name as name``; or one without ``as``, and below the imports
+    ``public_name = name``, for type checkers export no other renaming.  What is no name of the module is a
     module in it.  Lines below an ``if`` are found all the same, and not listed.
     """
     module = sys.modules[package]
@@ -92,12 +93,16 @@ def _places(stub: Path, all_of_them: bool = False) -> list[tuple[str, tuple[str,
     lines: list[ast.stmt] = []
     for line in ast.parse(stub.read_text(encoding="utf-8")).body:
         lines += line.body if isinstance(line, ast.If) and all_of_them else [line]
-    return [
-        (alias.asname or alias.name, (str(line.module), alias.name))
+    found = {
+        alias.asname or alias.name: (str(line.module), alias.name)
         for line in lines
         if isinstance(line, ast.ImportFrom)
         for alias in line.names
-    ]
+    }
+    for line in lines:
+        if isinstance(line, ast.Assign) and isinstance(line.value, ast.Name):
+            found[ast.unparse(line.targets[0])] = found.pop(line.value.id)
+    return list(found.items())
 
 
 def _found(module: str, name: str) -> Any:

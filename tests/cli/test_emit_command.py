@@ -80,7 +80,7 @@ def test_where_the_files_go(run, refused):
     assert "cannot be made" in refused(f"{PADDLE} -o file/below")
     run(f"{PADDLE} -o wall")
     Path("wall/law.h").write_text("mine", encoding="utf-8")
-    assert "exists" in refused(f"{PADDLE} -o wall")
+    assert "exists; choose another name, or give --force to" in refused(f"{PADDLE} -o wall")
     assert Path("wall/law.h").read_text(encoding="utf-8") == "mine"
     run(f"{PADDLE} -o wall --force")
     assert Path("wall/law.h").read_text(encoding="utf-8") != "mine"

@@ -12,6 +12,10 @@ REFUSED = {
         "check haptic-paddle --stifness 3": ("--stifness", "did you mean --stiffness"),
         "check haptic-paddle --coulomb_friction=3": "did you mean --coulomb-friction",
         "check haptic-paddle --stiff 3": "no option --stiff",
+        "check haptic-paddle --quiet": "no option --quiet; see zwidth check --help",  # not --inertia
+        "check haptic-paddle --kp 3": "no option --kp; it is --stiffness here",
+        "check haptic-paddle --kd 3": "no option --kd; it is --virtual-damping here",
+        "pair haptic-paddle --kd 3": "it is --virtual-damping or --local-damping here",
         "check haptic-paddle --stiffness '-0.1 N/m'": "stiffness must be ≥ 0",
         "check haptic-paddle --stiffness": "expected one argument",
         "check haptic-padle --stiffness 3": "haptic-paddle",
@@ -182,7 +186,7 @@ REFUSED = {
     },
     "compare haptic-paddle": {
         "--stiffness 400 --laws wall --fastest fast": "fastest",
-        "--stiffness 400 --laws magic": 'no law "magic"',
+        "--stiffness 400 --laws magic": 'no such law for this device, "magic"',
         "--type maxwell --branch-stiffness 3 --branch-damping 1": "",
     },
     "workspace": {

@@ -249,3 +249,23 @@ def test_files_of_joints_that_cannot_be_used(refused, text, options, words):
 def test_joints_by_file_and_by_options(run):
     Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]", encoding="utf-8")
     run(f"{TWO_LINK} --joint-damping 0.02,0.01").says("joint damping 0.02, 0.01 N·m·s/rad")
+
+
+TWO_LINKS = """<robot name="two"><link name="base"/><link name="upper"/><link name="lower"/><link name="tip"/>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+<limit lower="-1.5" upper="1.5" effort="5" velocity="5"/></joint>
+<joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><origin xyz="0.2 0 0"/>
+<axis xyz="0 0 1"/><limit lower="0.3" upper="2.5" effort="5" velocity="5"/></joint>
+<joint name="end" type="fixed"><parent link="lower"/><child link="tip"/>
+<origin xyz="0.2 0 0"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(("frame", "said"), [("lower", ", which elbow cannot move (--frame"), ("tip", "")])
+def test_a_hand_on_the_axis_of_a_joint_is_told(run, frame, said):
+    """The frame of a link is at its joint: a description without a tip maps the wrong point."""
+    Path("two.urdf").write_text(TWO_LINKS, encoding="utf-8")
+    words = run(
+        f"workspace two.urdf --joint-damping 0.02 --stiffness 100 --points 8 --frame {frame}", None
+    ).words
+    assert f"hand at {frame}{said}" in words
+    assert ("cannot move" in words) == (frame == "lower")

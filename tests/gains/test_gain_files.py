@@ -184,6 +184,7 @@ def test_yaml_json_and_toml_are_the_same(tmp_path):
     ("text", "said"),
     [
         ("a: 1\n", "no gains of a known arm"),
+        ("kp: [80]\nkd: [2]\n", "take zwidth pair: --stiffness and --virtual-damping"),
         ("- 1\n", "expected keys"),
         ("a: [1\n", "not YAML: line"),
         ("LeaderArmParam: 3\n", "expected keys below it"),

@@ -11,6 +11,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import NoReturn
 
 from zwidth.cli.commands import COMMANDS, configure, run
@@ -142,9 +143,16 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     inner = underscored.removeprefix("--transmission.").replace("-", "_")
     if inner != underscored and inner in NOT_OF_IT:
         return f"there is no option {plain(name)}: {NOT_OF_IT[inner]}"
-    hint = suggestion(name, options).replace('"', "") if len(name) > 2 else "see --help"
-    short = hint if hint.startswith("did") else f"see {child.prog} --help"
-    return f"there is no option {plain(name)}; {short}"
+    meant = [option for option in _GAINS.get(underscored, ()) if option in options]
+    if meant:
+        return f"there is no option {plain(name)}; it is {' or '.join(meant)} here"
+    near = get_close_matches(underscored[2:62], [option.lstrip("-") for option in options], n=1)
+    hint = f"did you mean --{near[0]}?" if near else f"see {child.prog} --help"
+    return f"there is no option {plain(name)}; {hint}"
+
+
+_GAINS = {"--kp": ("--stiffness",), "--kd": ("--virtual-damping", "--local-damping")}
+"""What the gains of a controller are called here."""
 
 
 WELCOME = """\

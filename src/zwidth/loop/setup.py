@@ -19,6 +19,7 @@ from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.model.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.model.device.device import Device, require_rigid
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
@@ -262,7 +263,7 @@ def frame_of(
         found: Frame = known[key]
         return found
     if not isinstance(device, Device):
-        raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
+        raise InputError(f"the device is a zwidth.Device, {instead_of_device(device)}")
     require_rigid(device, "this loop")
     if not isinstance(operator, Operator):
         raise InputError(

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.system import is_system
 from zwidth.model.environment.transfer_function import as_environment
@@ -402,7 +403,7 @@ def _as_evidence(shown: Evidence | None) -> dict[str, Any]:
 
 def _instead_of_one(thing: object) -> str:
     """What was given; and what a plant is as a device."""
-    got = f"got {type(thing).__name__}"
+    got = instead_of_device(thing)
     if not is_system(thing):
         return got
     return (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -183,7 +184,7 @@ IIR = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         ((device(1, (1, 2)), zw.Wall(300)), BOUNDS, "no single value"),
         (SPRING, {"penetration": 0, "speed": 1}, "penetration must be > 0"),
         (SPRING, {"penetration": "-0.001", "speed": 1}, "penetration must be > 0"),
-        (SPRING, {"penetration": "1 mm", "speed": 1}, "expected a number"),
+        (SPRING, {"penetration": "1 s", "speed": 1}, "penetration is in m; got"),
         (SPRING, {"penetration": "0.001", "speed": 0}, "speed must be > 0"),
         (SPRING, {"penetration": "0.001", "speed": float("nan")}, "finite"),
         (CONTACT, {"penetration": "0.8", "speed": 100, "effort": 0}, "too many"),
@@ -259,3 +260,19 @@ def test_the_gain_of_a_transfer_function_is_bracketed():
     assert bracket.relative_width < 1e-4
     wall = passive_limit(ideal, zw.Wall(100), "gain", tolerance=1e-4)
     assert wall.proved_passive <= zw.check(ideal, zw.Wall(100)).max_stiffness / 100 <= wall.proved_active
+
+
+def test_bounds_on_the_hand_may_carry_their_unit():
+    told = zw.limit(*SPRING, penetration="1 mm", speed="500 mm/s")
+    assert told.proved_passive == zw.limit(*SPRING, **BOUNDS).proved_passive
+    values = zw.available_storage(*SPRING, penetration="1 mm", speed="500 mm/s")
+    assert values.scope == zw.available_storage(*SPRING, **BOUNDS).scope
+    with pytest.raises(zw.InputError, match='speed is in m/s; got "2 mm"'):
+        zw.limit(*SPRING, speed="2 mm")
+
+
+def test_a_bracket_says_what_was_found_as_a_verdict_does():
+    found = zw.limit(*SPRING)
+    assert (found.outcome, found.claim) == ("bracketed", found.describe())
+    assert replace(found, proved_active=None).outcome == "one side"
+    assert replace(found, proved_active=None, proved_passive=None).outcome == "undecided"

@@ -72,11 +72,8 @@ def _of_every_hand(bracket: Bracket) -> list[Row]:
 def _headline(bracket: Bracket) -> Padding:
     if bracket.every_value:
         return headline("NO LIMIT", "green", f"{_name(bracket)}: every value is proved passive.")
-    sides = [side is not None for side in (bracket.proved_passive, bracket.proved_active)]
-    badge, colour = {2: ("BRACKETED", "green"), 1: ("ONE SIDE", "yellow"), 0: ("UNDECIDED", "yellow")}[
-        sum(sides)
-    ]
-    return headline(badge, colour, _claim(bracket))
+    colour = "green" if bracket.outcome == "bracketed" else "yellow"
+    return headline(bracket.outcome.upper(), colour, _claim(bracket))
 
 
 def _claim(bracket: Bracket) -> str:

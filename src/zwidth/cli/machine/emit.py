@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     except NotEmitted as refused:
         print_message(refused)
         return exit_status(refused.judged.outcome)
-    _give_out(found, found.write(arguments.save, force=arguments.force), arguments.json)
+    _give_out(found, found.write(arguments.save, force=arguments.force, how="--force"), arguments.json)
     return 0
 
 

@@ -35,7 +35,21 @@ def arm_in_words(arm: Arm, rate: float) -> str:
     """Its name, how many joints it has, of a description where the hand is, and the rate [Hz]."""
     count = f"{arm.joint_count} joint{'s' if arm.joint_count > 1 else ''}"
     frame = getattr(arm, "frame", None)
-    return ", ".join([arm.name, count, shown(rate, "Hz"), *([f"hand at {frame}"] if frame else [])])
+    return ", ".join(
+        [arm.name, count, shown(rate, "Hz"), *([f"hand at {frame}{_idle(arm)}"] if frame else [])]
+    )
+
+
+def _idle(arm: Any) -> str:
+    """Joints that do not move the hand: a link's frame is at its first joint, and not at its tip."""
+    import numpy as np
+
+    low, high = np.array(arm.joint_range).T
+    inside = low + np.outer((0.3, 0.6), high - low)
+    moves = (np.abs(arm.jacobian(inside)).max(axis=(0, 1)) > 1e-9) | (low == high)
+    idle = [one.name for one, moved in zip(arm.model.coordinates, moves, strict=True) if not moved]
+    more = f" and {len(idle) - 3} others" if len(idle) > 3 else ""
+    return f", which {', '.join(idle[:3])}{more} cannot move (--frame says where the hand is)" if idle else ""
 
 
 def _built_in(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:

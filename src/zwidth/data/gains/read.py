@@ -134,5 +134,6 @@ def _nothing(table: GainTable, family: str | None) -> InputError:
     wanted = "; ".join(f"{name}: {keys}" for name, keys in _WANTED.items())
     return InputError(
         f"{table.label}: no gains of a known arm. Read are files with these keys. {wanted}; one arm in ROS: "
-        "gains or pid with p, i, d, k_gains, stiffness, below a type or ros__parameters"
+        "gains or pid with p, i, d, k_gains, stiffness, below a type or ros__parameters. Which arm a file is "
+        "of --family says, too; kp and kd of one joint take zwidth pair: --stiffness and --virtual-damping"
     )

@@ -202,7 +202,7 @@ class Emitted(Result):
             "verdict": self.verdict.to_dict(),
         }
 
-    def write(self, directory: str | Path, *, force: bool = False) -> list[Path]:
+    def write(self, directory: str | Path, *, force: bool = False, how: str = "force=True") -> list[Path]:
         """Write every file; the places, in their order.
 
         Parameters
@@ -211,6 +211,8 @@ class Emitted(Result):
             Made where it is not there.
         force
             True to replace files.
+        how
+            What a refusal says to give for that.
 
         Raises
         ------
@@ -226,7 +228,7 @@ class Emitted(Result):
         sketch = f"{self.prefix}.ino"  # Arduino wants it to be called as its folder
         named = {folder.resolve().name + ".ino" if f == sketch else f: text for f, text in self.files.items()}
         for name in named:
-            check_target(folder / name, force)
+            check_target(folder / name, force, how)
         for name, text in sorted(named.items()):
             with writing_whole(folder / name) as file:
                 file.write(text.encode())

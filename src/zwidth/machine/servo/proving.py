@@ -19,6 +19,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import CompiledConnection, Connection, LibraryConnection
 from zwidth.model.device.device import Device
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment.environment import Environment
 from zwidth.native.compiled import Array
 from zwidth.passivity.transmission import seen_at_motor
@@ -83,7 +84,7 @@ def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
 def check_kinds(device: Device, connection: Connection) -> None:
     """Refuse a device and a connection that do not go together."""
     if not isinstance(device, Device):
-        raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
+        raise InputError(f"the device is a zwidth.Device, {instead_of_device(device)}")
     if not isinstance(connection, (CompiledConnection, LibraryConnection)):
         raise InputError(
             f"the connection is one of zwidth.servo.devices, got {type(connection).__name__}: it says how "

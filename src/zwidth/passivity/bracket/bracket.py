@@ -85,6 +85,17 @@ class Bracket(Result):
     )
 
     @property
+    def outcome(self) -> str:
+        """ "bracketed", with a value on each side; "one side"; or "undecided"."""
+        sides = [side is not None for side in (self.proved_passive, self.proved_active)]
+        return ("undecided", "one side", "bracketed")[sum(sides)]
+
+    @property
+    def claim(self) -> str:
+        """The bracket in a sentence."""
+        return self.describe()
+
+    @property
     @answers()
     def hand(self) -> str:
         """The hands that the bracket is about, in words: "every hand", or bounds."""

@@ -10,6 +10,7 @@ from typing import Any
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.model.device.friction import FrictionCurve
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
@@ -21,7 +22,7 @@ from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
 from zwidth.passivity.storage.chain_table import DoesNotClose
 from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.storage.hand_bounds import slow_hands
+from zwidth.passivity.storage.hand_bounds import bounds_given, slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit
@@ -66,7 +67,7 @@ def passive_limit(
         factor on its force; of a `HuntCrossley` contact "stiffness" or "dissipation" too.  Of laws in a
         chain one of the environment that they render.
     penetration, speed
-        Bounds on the hand [m; rad], [m/s; rad/s], as for `available_storage`.
+        Bounds on the hand [m; rad], [m/s; rad/s], or with units, as for `available_storage`.
     force_limit, force_resolution
         True to count in the device's force limit, the steps of its converter.
     friction
@@ -93,7 +94,7 @@ def passive_limit(
         If there is no such parameter, or values cannot be iterated (see `available_storage`).
     """
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+        raise InputError(f"the first argument is a Device, {instead_of_device(device)}")
     if not isinstance(tolerance, int | float) or not 1e-6 <= tolerance < 1:
         raise InputError(
             f"tolerance must be a number from 1e-6 to 1, got {tolerance!r}: it is the relative width wanted"
@@ -105,6 +106,7 @@ def passive_limit(
     asked = parameter_of(device, law, parameter)
     most = checked_effort(effort)
     time_limit(seconds)
+    penetration, speed = bounds_given(device, penetration, speed)
     counted = penetration, speed, force_limit, force_resolution, friction
     of = as_contact(contact)
     if not iterate or of == "kept" or device.transmission is not None:  # of these closed forms alone know

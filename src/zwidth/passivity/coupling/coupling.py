@@ -29,6 +29,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment import PulseTransferFunction, Wall
 from zwidth.model.environment.environment import Environment
 from zwidth.model.rendering import VirtualCoupling
@@ -195,7 +196,7 @@ def coupling_condition(device: Device, stiffness: RealLike, damping: RealLike = 
     Colgate, Stanley & Brown, IROS 1995; derived for this project beyond a rigid wall without delay.
     """
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+        raise InputError(f"the first argument is a Device, {instead_of_device(device)}")
     k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
     b = number("damping", damping)
     device.exact("damping")  # an interval of it has no single answer to rows() and the counterexample

@@ -30,6 +30,7 @@ from scipy.optimize import minimize_scalar
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment import BackwardDifference, Wall
 from zwidth.model.environment.environment import Environment, certain
 from zwidth.model.environment.wall import wall_of
@@ -156,7 +157,7 @@ def design_coupling(device: Device, goal: Goal = "stiffest", margin: RealLike = 
         If b = 0, a number is outside its bound, a value is an interval or the goal is none of these.
     """
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+        raise InputError(f"the first argument is a Device, {instead_of_device(device)}")
     part = number("margin", margin)
     if not 0 <= part < 1:
         raise InputError(f"margin must be ≥ 0 and < 1, got {margin}: it is a part of the device damping")

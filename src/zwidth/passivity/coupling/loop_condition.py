@@ -24,6 +24,7 @@ from typing import Literal
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
+from zwidth.model.device.instead import instead_of_device
 from zwidth.passivity.coupling.environment_class import PassivityExcess, SlopeBounds
 from zwidth.passivity.coupling.loop_forms import (
     DIRECT,
@@ -180,7 +181,7 @@ def transformed_condition(
 
 def _check_kinds(device: Device, environment: SlopeBounds | PassivityExcess) -> None:
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+        raise InputError(f"the first argument is a Device, {instead_of_device(device)}")
     if not isinstance(environment, (SlopeBounds, PassivityExcess)):
         raise InputError(
             f"the environment is SlopeBounds or PassivityExcess, got {type(environment).__name__}. "

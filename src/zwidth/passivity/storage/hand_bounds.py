@@ -17,7 +17,9 @@ from zwidth.passivity.scope import Hands, unit_key
 from zwidth.passivity.storage.domain import Domain, Losses
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.witness.motion import Motion
+from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
+from zwidth.quantity.units import parse_number
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,14 @@ class HandBounds:
             far = self.max_depth if self.outside == self.penetration else self.outside
             document[f"outside_{length}"] = exact_text(far)
         return document
+
+
+def bounds_given(device: Device, penetration: object, speed: object) -> tuple[Exact | None, Exact | None]:
+    """Bounds on the hand in SI, as numbers or as texts with a unit; None where there is none."""
+    return (
+        None if penetration is None else parse_number(penetration, device.unit("position"), "penetration"),
+        None if speed is None else parse_number(speed, device.unit("velocity"), "speed"),
+    )
 
 
 def hand_bounds(law: FiniteLaw, losses: Losses, domain: Domain) -> HandBounds:

@@ -15,6 +15,7 @@ from typing import Any
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.model.device.friction import FrictionCurve
+from zwidth.model.device.instead import instead_of_device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.rendering.rendered import laws_of
@@ -24,7 +25,7 @@ from zwidth.passivity.storage.chain_program import ChainProgram, chain_program
 from zwidth.passivity.storage.domain import Domain, Losses, domain_for, losses_of, states_of, too_large
 from zwidth.passivity.storage.gain import Gain, gain
 from zwidth.passivity.storage.grid import Approximation, Grid
-from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
+from zwidth.passivity.storage.hand_bounds import HandBounds, bounds_given, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction, has_cells, prove_on_cells
@@ -179,10 +180,11 @@ def program_of(
 ) -> DynamicProgram | ChainProgram:
     """The dynamic program of a loop; arguments as for `available_storage`."""
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+        raise InputError(f"the first argument is a Device, {instead_of_device(device)}")
     if friction is not None and not isinstance(friction, FrictionCurve):
         raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
     given = as_environment(environment)
+    penetration, speed = bounds_given(device, penetration, speed)
     if laws_of(given):
         return chain_program(device, given, penetration, speed, force_limit, force_resolution, friction)
     law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
