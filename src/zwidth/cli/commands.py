@@ -77,7 +77,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "exit status: 0 written, 2 bad input\n\n"
             "examples:\n"
             "  zwidth new device\n"
-            "  zwidth new environment --type wall --stiffness '200 N/m' --no-questions\n"
+            "  zwidth new environment --type wall --motion linear --stiffness '200 N/m' --no-questions\n"
             "  zwidth new device my-knob.toml --motion rotary --damping '2e-4 N*m*s/rad' --rate '2 kHz' "
             "--no-questions",
         ),
@@ -353,7 +353,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "confidence: 0 passive, 1 active, 3 undecided, 4 passive while contact is kept\n\n"
             "examples:\n"
             "  zwidth identify session.csv -o my-device.toml --plot fig.png\n"
-            "  zwidth identify session.csv --column position=enc --unit position=counts "
+            "  zwidth identify counts.csv --column position=enc --unit position=counts "
             "--resolution '22.4 um' --stiffness 250\n"
             "  zwidth identify swing.csv --mass '36 g'",
         ),

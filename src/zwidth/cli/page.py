@@ -19,6 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.output import GLUE, columns, quiet_pipe, spelled
+from zwidth.cli.parsing import command_lines
 from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
@@ -130,7 +131,10 @@ def _hanging(text: Text) -> Table:
     """A line that, where it breaks, goes on under its own beginning."""
     line = _folding(3)
     mark, _, rest = text.plain.partition(" ")
-    if len(mark) == 1:
+    if f"{mark} " == "zwidth " or rest.startswith("zwidth "):
+        line = _folding(2)
+        line.add_row("  ", Text("\n".join(command_lines(text.plain, columns() - 2)), text.style))
+    elif len(mark) == 1:
         style = text.spans[0].style if text.spans else text.style
         line.add_row("  ", Text(f"{mark} ", style), Text(rest, text.style))
     else:

@@ -14,8 +14,8 @@ from zwidth.quantity.spoken import ANGLES, note
 _USAGE = re.compile(r"\[[^\]]*\]|-\S+ '[^']*'|-\S+ [^\s\[-]\S*|\S+")
 """What of a usage line stays together: what stands in brackets, and an option with its value."""
 
-_OPTION = re.compile(r"--?[a-z][\w.-]* '[^']*'|--?[a-z][\w.-]* [^\s-]\S*|\S+")
-"""The same of an example."""
+_OPTION = re.compile(r"""--?[a-z][\w.-]* (?:'[^']*'|"[^"]*")|--?[a-z][\w.-]* [^\s-]\S*|\S+""")
+"""The same of a command line."""
 
 _ON = " \\"
 """Where it ends a line, a shell reads on in the next."""
@@ -45,9 +45,12 @@ class Help(argparse.RawDescriptionHelpFormatter):
 
 def _told(paragraphs: Iterable[str], width: int) -> Iterator[str]:
     for text in paragraphs:
-        yield from (
-            _filled(text, _OPTION, width, " " * 6, _ON) if text[:9] == "  zwidth " else wrapped(text, width)
-        )
+        yield from command_lines(text, width) if text[:9] == "  zwidth " else wrapped(text, width)
+
+
+def command_lines(line: str, width: int) -> Iterator[str]:
+    """A command line in lines of at most `width` columns that a shell reads as one."""
+    return _filled(line, _OPTION, width, " " * 6, _ON)
 
 
 def _paragraphs(text: str) -> Iterator[str]:

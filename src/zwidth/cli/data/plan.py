@@ -39,6 +39,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+_NOISE = {"linear": "0.1 N", "rotary": "0.01 N*m"}
+"""For example, by the motion of the device."""
+
+
 def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     quantities = {"force_noise": "force", "length": "position", "speed": "friction_speed"}
     units = {name: GLOSSARY[quantity].unit_for(motion) for name, quantity in quantities.items()}
@@ -46,8 +50,8 @@ def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     typed = {name: getattr(arguments, name) for name in units}
     if typed["force_noise"] is None:
         raise InputError(
-            "the noise of the force is needed: --force-noise '0.1 N', the standard deviation of the load "
-            "cell at rest"
+            f"the noise of the force is needed: --force-noise '{_NOISE[motion]}', the standard deviation of "
+            "the load cell at rest"
         )
     if motion == "rotary" and typed["length"] is None:
         raise InputError("the length of a stroke is needed: --length '90 deg', as far as the device turns")

@@ -232,7 +232,7 @@ def _safety(arguments: argparse.Namespace, tables: Mapping[str, Table], motion: 
 def _hand(
     arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str, connection: Connection | None
 ) -> Any:
-    from zwidth.cli.simulate.tables import build_hand, operator_parameters
+    from zwidth.cli.simulate.tables import THROWN, build_hand, operator_parameters
     from zwidth.model.operator import HandsOff
 
     typed = given(arguments, [p.key for p in operator_parameters()])
@@ -244,7 +244,7 @@ def _hand(
     if isinstance(hand, HandsOff):
         raise InputError(
             "hands-off moves nothing, and a served device begins at rest; one that is let go on its way: "
-            "zwidth simulate … --operator hands-off --initial-velocity '360 deg/s'"
+            f"zwidth simulate … --operator hands-off --initial-velocity '{THROWN[motion]}'"
         )
     return hand
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable
 
 from rich.table import Table as Lines
@@ -86,7 +87,7 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
         one = controllers.cartesian[0]
         rate = one.rate or controllers.rate
         often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
-        ask = f"zwidth workspace ARM.urdf --pose --wall {path}{often}"
+        ask = f"zwidth workspace ARM.urdf --pose --wall {shlex.quote(path)}{often}"
         lines = [f"{ask} --postures 20000{'' if one.of_task else ' -o passive.yaml'}"]
         if one.nullspace:
             lines.append(f'{ask} --null-stiffness wall --within "2 deg"')

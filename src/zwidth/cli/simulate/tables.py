@@ -59,6 +59,9 @@ IN_A_WORD: Mapping[str, str] = MappingProxyType(
 _BEGIN = {"linear": "typical", "rotary": "hands-on"}
 """The hand to begin with, by the motion of the device."""
 
+THROWN, _BESIDE = {"linear": "0.2 m/s", "rotary": "360 deg/s"}, {"linear": "1 mm", "rotary": "5 deg"}
+"""How a device is let go, for example, by its motion."""
+
 AMPLIFIERS = ("current", "ideal", "voltage-limited", "lag")
 
 
@@ -166,8 +169,8 @@ def build_touch(
     options = _options(run_table, motion)
     if isinstance(hand, HandsOff) and not {"initial_position", "initial_velocity"} & options.keys():
         raise InputError(
-            "hands-off moves nothing by itself: say how it is let go, --initial-velocity '360 deg/s' or "
-            "--initial-position '5 deg'"
+            "hands-off moves nothing by itself: say how it is let go, "
+            f"--initial-velocity '{THROWN[motion]}' or --initial-position '{_BESIDE[motion]}'"
         )
     return Touch(hand, options.pop("duration", None), options)
 
