@@ -17,27 +17,27 @@ SOURCE = Path(zw.__file__).parent
 FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}")]
 
 LINES = {
-    "beside the rooms": 929,
+    "beside the rooms": 940,
     "checker": 10418,
-    "cli": 10609,
-    "data": 22730,
+    "cli": 10643,
+    "data": 22731,
     "links": 2339,
-    "loop": 7018,
-    "machine": 17625,
-    "model": 17653,
+    "loop": 7019,
+    "machine": 17628,
+    "model": 17670,
     "native": 1658,
-    "passivity": 27989,
+    "passivity": 28016,
     "quantity": 2062,
     "show": 9010,
     "study": 5651,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 135691
-PHYSICS = 65140
+IN_ALL = 135785
+PHYSICS = 65185
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 668, 25
+FILES_IN_ALL, IN_A_FOLDER = 669, 25
 
 ALONE = 135
 """Files that one other file alone imports."""
