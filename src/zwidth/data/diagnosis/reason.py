@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from zwidth.data.diagnosis.cable import STRUCTURE, judged, move_apart
+from zwidth.data.diagnosis.cable import STRUCTURE, SURE_AT_LEAST, judged, move_apart
 from zwidth.data.diagnosis.causes import CAUSES, follows, is_named, likelihoods
 from zwidth.data.diagnosis.change import PASSIVE, Change, change_for
 from zwidth.data.diagnosis.drive import Drive
@@ -129,7 +129,7 @@ def _named(taken: Recording, seen: Evidence, device: Device | None) -> Diagnosis
     if device is not None and move_apart(seen, device):
         seen = replace(seen, moves_as=None)  # that of one body
         cause, shown_by = judged(seen, device)
-        first, p = cause or first, 1.0
+        first, p = cause or first, SURE_AT_LEAST
         likely = {first: p} if cause else likely
     else:
         piece = device is None or device.transmission is None or first != STRUCTURE
