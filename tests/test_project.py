@@ -7,6 +7,7 @@ import dataclasses
 import inspect
 import json
 import math
+import os
 import re
 import shlex
 import subprocess
@@ -476,3 +477,13 @@ def test_each_command_of_the_readme_works_as_typed(tmp_path, monkeypatch, capsys
         ended = ["--duration", "0.2 s"] if argv[0] == "serve" else []  # else it runs until it is told to end
         status = main([*argv, *ended])
         assert status in (0, 1), f"{line}\n{capsys.readouterr().err}"
+
+
+def test_a_type_checker_sees_what_the_readme_asks_of_a_verdict(tmp_path):
+    """Every attribute of its example exists for mypy, on the type that `zwidth.check` is said to return."""
+    script = tmp_path / "readme.py"
+    script.write_text(_blocks("README.md", "python")[0], encoding="utf-8")
+    environment = {**os.environ, "MYPYPATH": str(ROOT / "src")}
+    command = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), str(script)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf-8", env=environment)
+    assert done.returncode == 0, done.stdout

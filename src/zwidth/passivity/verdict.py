@@ -53,6 +53,31 @@ class Verdict(Found):
         """The road on which the outcome was found, in a few words."""
         return decided_by(self)
 
+    @property
+    def max_stiffness(self) -> float | None:
+        """Largest passive K, all else as given [N/m; N·m/rad]; None where none is known."""
+        return None
+
+    @property
+    def required_damping(self) -> float | None:
+        """Smallest passive b, all else as given [N·s/m; N·m·s/rad]; None where none is known."""
+        return None
+
+    @property
+    def critical_frequency(self) -> float | None:
+        """Where most damping is asked for [Hz]; None where that is not what decides."""
+        return None
+
+    @property
+    def admissible_speed(self) -> float | None:
+        """Up to which hands are safe [m/s; rad/s]; None where it is not known."""
+        return None
+
+    @property
+    def limit(self) -> str:
+        """What limits the loop, in a few words; "" where that is not known."""
+        return ""
+
     @cached_property
     def demand(self) -> tuple[str, ...]:
         """What the motion asks of the actuator, where there is one and the actuator's limit is known."""
