@@ -19,7 +19,7 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 LINES = {
     "beside the rooms": 940,
     "checker": 10418,
-    "cli": 10643,
+    "cli": 10648,
     "data": 22734,
     "links": 2339,
     "loop": 7019,
@@ -33,7 +33,7 @@ LINES = {
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 135813
+IN_ALL = 135818
 PHYSICS = 65210
 """Lines of quantity, model, loop, passivity and checker."""
 

@@ -186,7 +186,7 @@ REFUSED = {
     },
     "compare haptic-paddle": {
         "--stiffness 400 --laws wall --fastest fast": "fastest",
-        "--stiffness 400 --laws magic": 'no such law for this device, "magic"',
+        "--stiffness 400 --laws magic": 'no law "magic" for this device',
         "--type maxwell --branch-stiffness 3 --branch-damping 1": "",
     },
     "workspace": {

@@ -23,7 +23,7 @@ def _all(pages: str, reason: str) -> dict[str, str]:
 
 NOT_RUN = {
     "README.md": ELSEWHERE,
-    **_all("gain-files limit links quickstart scenes tissue", ELSEWHERE),
+    **_all("gain-files limit links quickstart scenes theory/certificates tissue", ELSEWHERE),
     **_all("identification logs recording", RECORDING),
     **_all("explore firmware", HARDWARE),
     "docs/serve.md 1": "two seconds of real time, in which a busy machine may be late",

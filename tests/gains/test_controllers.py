@@ -281,7 +281,8 @@ def test_checks_on_the_command_line(tmp_path, capsys):
     assert main(["gains", str(joints), "--plant", str(plant), "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["joints"][1]["outcome"] == "active"
     assert main(["gains", str(end)]) == 3
-    assert "zwidth workspace ARM.urdf --pose --wall" in capsys.readouterr().out
+    printed = " ".join(capsys.readouterr().out.replace("\\\n", "").split())  # a long line goes on in the next
+    assert "zwidth workspace ARM.urdf --pose --wall" in printed
     arm = panda_like(tmp_path / "panda.urdf", damping=30)
     asked = ["workspace", str(arm), "--wall", str(end), "--postures", "200", "--json"]
     assert main(asked) == 2

@@ -143,7 +143,7 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     inner = underscored.removeprefix("--transmission.").replace("-", "_")
     if inner != underscored and inner in NOT_OF_IT:
         return f"there is no option {plain(name)}: {NOT_OF_IT[inner]}"
-    meant = [option for option in _GAINS.get(underscored, ()) if option in options]
+    meant = [option for option in _GAINS.get(underscored.removeprefix("--"), ()) if option in options]
     if meant:
         return f"there is no option {plain(name)}; it is {' or '.join(meant)} here"
     near = get_close_matches(underscored[2:62], [option.lstrip("-") for option in options], n=1)
@@ -151,7 +151,7 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     return f"there is no option {plain(name)}; {hint}"
 
 
-_GAINS = {"--kp": ("--stiffness",), "--kd": ("--virtual-damping", "--local-damping")}
+_GAINS = {"kp": ("--stiffness",), "kd": ("--virtual-damping", "--local-damping")}
 """What the gains of a controller are called here."""
 
 

@@ -117,7 +117,11 @@ def section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:
         return
     out.print(Text(title, style="bold"))
     for part in lines:
-        out.print(_hanging(part) if isinstance(part, Text) else Padding(part, (0, 0, 0, 2)))
+        if isinstance(part, Text) and _is_command(part):  # no word of it in two, or a shell cannot read it
+            typed = "\n".join(f"  {line}" for line in command_lines(part.plain, columns() - 2))
+            out.print(Text(typed, part.style), soft_wrap=True)
+        else:
+            out.print(_hanging(part) if isinstance(part, Text) else Padding(part, (0, 0, 0, 2)))
     out.print()
 
 
@@ -127,14 +131,15 @@ def items(texts: Iterable[object], style: str = "") -> Iterator[Text]:
         yield Text(f"· {text}", style=style)
 
 
+def _is_command(text: Text) -> bool:
+    return text.plain.startswith("zwidth ") or text.plain[1:].startswith(" zwidth ")
+
+
 def _hanging(text: Text) -> Table:
     """A line that, where it breaks, goes on under its own beginning."""
     line = _folding(3)
     mark, _, rest = text.plain.partition(" ")
-    if f"{mark} " == "zwidth " or rest.startswith("zwidth "):
-        line = _folding(2)
-        line.add_row("  ", Text("\n".join(command_lines(text.plain, columns() - 2)), text.style))
-    elif len(mark) == 1:
+    if len(mark) == 1:
         style = text.spans[0].style if text.spans else text.style
         line.add_row("  ", Text(f"{mark} ", style), Text(rest, text.style))
     else:
