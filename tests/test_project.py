@@ -482,8 +482,10 @@ def test_each_command_of_the_readme_works_as_typed(tmp_path, monkeypatch, capsys
 def test_a_type_checker_sees_what_the_readme_asks_of_a_verdict(tmp_path):
     """Every attribute of its example exists for mypy, on the type that `zwidth.check` is said to return."""
     script = tmp_path / "readme.py"
-    script.write_text(_blocks("README.md", "python")[0], encoding="utf-8")
+    unknown = "verdict.no_such_name"
+    script.write_text("\n".join([_blocks("README.md", "python")[0], unknown]), encoding="utf-8")
     environment = {**os.environ, "MYPYPATH": str(ROOT / "src")}
     command = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), str(script)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf-8", env=environment)
-    assert done.returncode == 0, done.stdout
+    (said,) = [line for line in done.stdout.splitlines() if line.startswith("readme.py:")]
+    assert "no_such_name" in said
