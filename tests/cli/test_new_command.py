@@ -326,7 +326,7 @@ STOP = {"--type": "bump-stop", "--start": "1 rad", "--stiffness": "20 N*m/rad", 
 )
 def test_detents_and_a_bump_stop_are_those_of_the_library(make, answers, same):
     make({**answers, "--motion": "rotary"}, "environment")
-    spring = environment_of("knob.toml")
+    spring = environment_of("wheel.toml")
     assert [float(x) for x in spring.positions] == pytest.approx([float(x) for x in same.positions])
     assert [float(f) for f in spring.forces] == pytest.approx([float(f) for f in same.forces])
 
@@ -364,7 +364,7 @@ def test_a_bump_stop_in_other_words(make, word):
     make({"--type": word, "--start": "450 deg", "--stiffness": "450"}, "environment")
     assert "f = (450 N*m/rad) u" in text("my-environment.toml")
     assert "the largest of my-device.toml" in text("my-environment.toml")
-    spring = environment_of("knob.toml")
+    spring = environment_of("wheel.toml")
     assert float(spring.positions[-1] - spring.positions[0]) == pytest.approx(20 / 450, abs=1e-8)
     assert float(spring.forces[-1]) == pytest.approx(20)
 

@@ -14,6 +14,8 @@ from zwidth.model.specification.read import Specification
         "simulate --operator typical --duration '0.2 s'",
         "compare --laws half-sample-prediction",
         "play -o page.html --no-browser",
+        "map --stiffness 0:400 --virtual-damping 0:0.2 --cells 8x8",
+        "serve --duration 0.1",
     ],
 )
 def test_a_delay_of_which_the_ends_are_known(line, run):
@@ -22,6 +24,14 @@ def test_a_delay_of_which_the_ends_are_known(line, run):
     command, _, rest = line.partition(" ")
     told = run(f"{command} hapkit.toml {rest}").err.replace("\n", " ")
     assert "the worst end is taken, for one value is needed: delay 250 µs" in told
+
+
+def test_a_map_is_of_the_worst_end_and_of_no_interval_of_a_mass(run, refused):
+    """Of a mass no end is the worst."""
+    line = "map --rate '1 kHz' --stiffness 0:400 --virtual-damping 0:0.2 --cells 8x8 --json"
+    found = run(f"{line} --mass 1 --damping '0.1 .. 0.3'").json
+    assert found == run(f"{line} --mass 1 --damping 0.1").json
+    assert "its mass is an interval" in refused(f"{line} --mass '1 .. 2' --damping 0.1")
 
 
 def test_the_limit_is_that_of_the_worst_end(run):

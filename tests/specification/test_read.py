@@ -382,6 +382,7 @@ def test_settings_of_a_wheel_have_no_unit(tmp_path, text):
         ({"environment.stiffness": "1"}, "there is none"),
         ({"environment.stifness": "1"}, "there is no parameter"),
         ({"type": "spring"}, "there is no environment of type"),
+        ({"type": "detents"}, "zwidth new environment FILE --type detents"),
         ({"virtual_damping": "1"}, "needs --stiffness"),
         ({}, "no environment is given"),
     ],

@@ -32,9 +32,9 @@ EXAMPLES = (
         "zwidth check paddle.toml wall.toml",
     ),
     Example(
-        ("knob.toml", "detents.toml", "turn.toml"),
+        ("knob.toml", "turn.toml"),
         "a knob with three detents, and two fingers that turn it",
-        "zwidth simulate knob.toml detents.toml turn.toml --plot turn.png",
+        "zwidth simulate knob.toml turn.toml --plot turn.png",
     ),
     Example(
         ("session.csv",),

@@ -84,10 +84,14 @@ def named_kind(table: Table, kinds: Mapping[str, Kind], what: str) -> Kind:
         raise InputError(f"{table.label}: type is missing; it may be: {', '.join(kinds)}")
     name = table.text("type")
     if name not in kinds:
-        raise InputError(
-            f"{table.where('type')}: there is no {what} {quoted(name)}; {suggestion(name, kinds)}"
-        )
+        hint = _BY_POINTS.format(name) if name in ("detents", "bump-stop") else suggestion(name, kinds)
+        raise InputError(f"{table.where('type')}: there is no {what} {quoted(name)}; {hint}")
     return kinds[name]
+
+
+_BY_POINTS = (
+    "it is a nonlinear-spring by its points, and zwidth new environment FILE --type {0} makes the file of one"
+)
 
 
 def plain(text: str, longest: int = 60) -> str:

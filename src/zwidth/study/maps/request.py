@@ -25,7 +25,8 @@ from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.passivity.scope import Hands, Scope, scope_of
 from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.passivity.transmission import as_one_body, elastic_of, is_ideal
-from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.exact import Exact, Interval, RealLike, ends
+from zwidth.quantity.text import in_words
 from zwidth.study.chunks.layout import Layout
 
 Array = NDArray[np.float64]
@@ -147,9 +148,9 @@ def request(
 ) -> Request:
     """Read what `z_width` is given."""
     if not device.is_certain:
-        raise InputError(
-            "a map is of one device, and a parameter of this one is an interval; choose a value in it"
-        )
+        wide = (key for key, value in device.parameters().items() if isinstance(value, Interval))
+        given = in_words(next(wide, "transmission"))
+        raise InputError(f"a map is of one device, and its {given} is an interval; choose a value in it")
     usual = standard_hands(device.motion) if device.transmission is None else {}
     named = usual if hands is None else dict(hands)
     known = tuple((name, as_hand(hand)) for name, hand in named.items())
