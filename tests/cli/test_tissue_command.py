@@ -114,6 +114,15 @@ def test_the_tissue_that_is_saved_is_the_one_that_was_checked(run):
     run("check phantom s.toml")
 
 
+def test_a_scale_says_while_which_contact_it_is_proved(run):
+    """Behind a delay more is proved of a hand that stays inside: what is saved is that, and says so."""
+    write()
+    told = run(f"tissue a.csv phantom --delay '1 ms' {ONE} --scaled -o s.toml", None).out.replace("\n", " ")
+    assert "while contact is kept" in told
+    assert "proved passive while contact is kept" in Path("s.toml").read_text(encoding="utf-8")
+    assert "PASSIVE IN CONTACT" in run("check phantom s.toml --delay '1 ms'", 4).out
+
+
 @pytest.mark.parametrize(
     ("head", "argv", "says"),
     [

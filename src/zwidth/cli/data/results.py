@@ -32,14 +32,23 @@ class OnDevice(NamedTuple):
     """The tissue on a device.
 
     `bracket`: of the factor on every force; None where nothing decides it, and then `reason` says why.
+    `kept`: the same of hands that stay inside, where more is proved of them; else None.
     `box`: of all that the intervals allow; None where they are not to be trusted.
     """
 
     device: Device
     verdict: Verdict
     bracket: Bracket | None
+    kept: Bracket | None
     reason: str
     box: Verdict | None
+
+
+def of_which(bracket: Bracket) -> str:
+    """The end of "proved passive": of which contact, of which hands; nothing of all."""
+    if bracket.scope.contact == "kept":
+        return " while contact is kept"
+    return "" if bracket.hand == "every hand" else f" for {bracket.hand}"
 
 
 class FittedTissue(NamedTuple):

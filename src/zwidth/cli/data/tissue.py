@@ -6,7 +6,7 @@ import argparse
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.data.results import FittedTissue, OnDevice
+from zwidth.cli.data.results import FittedTissue, OnDevice, of_which
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
 from zwidth.cli.output import print_found, targets
@@ -157,14 +157,15 @@ def _wall(test: TissueTest, device: Device, rule: Any) -> OnDevice:
 
     verdict = decided(Specification(device, test.environment(rule)))
     try:
-        bracket = test.wall(device, rule)
+        bracket, kept = test.wall(device, rule), test.wall(device, rule, "kept")
     except InputError as error:  # a contact that nothing decides on this device
-        return OnDevice(device, verdict, None, str(error), None)
+        return OnDevice(device, verdict, None, None, str(error), None)
+    more = (kept.proved_passive or 0) > 1.01 * (bracket.proved_passive or 0)
     try:
         box = test.environment(rule, level=LEVEL)
     except InputError:  # intervals that are not to be trusted: the report says which
-        return OnDevice(device, verdict, bracket, "", None)
-    return OnDevice(device, verdict, bracket, "", decided(Specification(device, box)))
+        return OnDevice(device, verdict, bracket, kept if more else None, "", None)
+    return OnDevice(device, verdict, bracket, kept if more else None, "", decided(Specification(device, box)))
 
 
 def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
@@ -174,13 +175,11 @@ def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
 
     law, remark = found.test.environment(found.rule), ""
     if scaled:
-        gain = None if found.wall is None or found.wall.bracket is None else found.wall.bracket.proved_passive
-        if gain is None:
+        bracket = found.wall and (found.wall.kept or found.wall.bracket)
+        if not bracket or bracket.proved_passive is None:
             raise InputError("--scaled: no scale of this tissue is proved passive on the device")
-        law, remark = (
-            found.test.scaled(gain, found.rule),
-            f"# Every force times {gain:.6g}: proved passive.\n",
-        )
+        law = found.test.scaled(bracket.proved_passive, found.rule)
+        remark = f"# Every force times {bracket.proved_passive:.6g}: proved passive{of_which(bracket)}.\n"
     numbers = [f"#   {name}: {low_high} {unit}" for name, _, low_high, unit in found.test.parameters()[1:]]
     head = [f"# Tissue of a {found.test.test.kind} test, by zwidth tissue; 95 % intervals:", *numbers]
     with writing_whole(path) as file:
@@ -196,7 +195,9 @@ def _json(found: FittedTissue) -> str:
         document["check"] = wall.verdict.to_dict()
         document["largest_gain"] = {
             "proved_passive": wall.bracket and wall.bracket.proved_passive,
+            "proved_passive_while_contact_is_kept": wall.kept and wall.kept.proved_passive,
             "proved_active": wall.bracket and wall.bracket.proved_active,
+            "hand": wall.bracket and wall.bracket.hand,
         }
         document["check_of_intervals"] = None if wall.box is None else wall.box.outcome
     return to_json(document)

@@ -8,7 +8,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.data.results import FittedTissue, OnDevice
+from zwidth.cli.data.results import FittedTissue, OnDevice, of_which
 from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section
 from zwidth.data.logs import Finding
 from zwidth.data.tissue import TissueTest
@@ -120,20 +120,22 @@ def _wall(wall: OnDevice | None) -> Iterator[Row]:
         return
     outcome = wall.verdict.outcome
     yield f"on {wall.device.name}", Text(f"{outcome}: {wall.verdict.claim}", style=TOLD[outcome].terminal)
-    yield "scale", wall.reason if wall.bracket is None else _scale(wall.bracket)
+    yield "scale", wall.reason if wall.bracket is None else _scale(wall.bracket, wall.kept)
     if wall.box is None:
         yield "intervals", "not checked: see what to doubt, or the model takes none"
     else:
         yield "intervals", f"of all that the 95 % intervals allow together: {wall.box.outcome}"
 
 
-def _scale(bracket: Bracket) -> str:
-    passive, active = bracket.outward((bracket.proved_passive, bracket.proved_active), 4)
-    if passive is None and active is None:
+def _scale(bracket: Bracket, kept: Bracket | None) -> str:
+    proved = []
+    for one in filter(None, (bracket, kept)):
+        if (most := one.outward((one.proved_passive, None), 4)[0]) is not None:
+            proved.append(f"up to {most:.4g} times this tissue is proved passive{of_which(one)}")
+    active = bracket.outward((None, bracket.proved_active), 4)[1]
+    if not proved and active is None:
         return "neither a proof nor a motion was found for any scale of this tissue"
-    if passive is None:
-        return f"no scale is proved passive; at {active:.4g} times a hand takes energy out"
-    told = f"up to {passive:.4g} times this tissue is proved passive"
+    told = "; ".join(proved) or "no scale is proved passive"
     return told if active is None else f"{told}; at {active:.4g} times a hand takes energy out"
 
 

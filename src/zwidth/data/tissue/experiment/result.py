@@ -82,8 +82,8 @@ class TissueTest(Documented):
         (
             "check, largest_gain, check_of_intervals",
             "with a device: the verdict on the tissue; `proved_passive` and `proved_active`, times "
-            "the tissue; the outcome for all that the 95 % intervals allow, null where it was not "
-            "asked",
+            "the tissue, of a `hand`, and what more is proved while contact is kept, else null; the outcome "
+            "for all that the 95 % intervals allow, null where it was not asked",
         ),
     )
 
@@ -220,11 +220,15 @@ class TissueTest(Documented):
         return self.best.environment(discretization, level=level)
 
     def wall(
-        self, device: Device, discretization: Discretization = "backward", seconds: float = 20.0
+        self,
+        device: Device,
+        discretization: Discretization = "backward",
+        contact: str = "made and broken",
     ) -> Bracket:
         """How many times the tissue the device may render: proved passive below, refuted above.
 
-        All forces are multiplied by the gain; relaxation times stay.  It is `zwidth.limit` of the estimates.
+        All forces are multiplied by the gain; relaxation times stay.  It is `zwidth.limit` of the estimates:
+        for every hand where a closed condition decides, else for the hands that `hand` of the bracket names.
 
         Parameters
         ----------
@@ -232,8 +236,8 @@ class TissueTest(Documented):
             What the hand holds.
         discretization
             Of a solid with branches.
-        seconds
-            After which the bracket so far is given.
+        contact
+            "kept": of hands that stay inside alone.
 
         Raises
         ------
@@ -242,7 +246,11 @@ class TissueTest(Documented):
         """
         from zwidth.passivity.bracket import passive_limit
 
-        return passive_limit(device, self.environment(discretization), "gain", seconds=seconds)
+        law = self.environment(discretization)
+        closed = passive_limit(device, law, "gain", iterate=False, contact=contact)
+        if closed.outcome != "undecided" or contact == "kept":
+            return closed
+        return passive_limit(device, law, "gain")
 
     def scaled(self, gain: float, discretization: Discretization = "backward") -> Environment:
         """The best fit with every force times a gain.
