@@ -22,6 +22,8 @@ from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple
 
+from zwidth import installing
+
 PACKAGE = Path(__file__).parent.parent
 BUILT = Path(__file__).with_name("steps.dll" if os.name == "nt" else "steps.so")
 
@@ -69,7 +71,7 @@ def _library() -> Library | None:
 def _warn(why: str) -> None:
     warnings.warn(
         f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, "
-        "clang, or the package ziglang) `pip install` builds them",
+        f"clang, or the package ziglang) {installing.line()} builds them",
         RuntimeWarning,
         stacklevel=4,
     )
