@@ -19,7 +19,7 @@ _WINDOWS = os.name == "nt"
 
 
 def line(extra: str = "", package: str = "") -> str:
-    """``pip install 'zwidth[extra]'``, as it works here.
+    """``pip install 'zwidth[extra]'`` as it works here.
 
     Parameters
     ----------

@@ -51,7 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         with answers_as_typed():
             return _run(typed)
     except InputError as error:
-        print_message(plain(as_typed(_in_a_file(str(error), typed), typed), _LONGEST_MESSAGE))
+        said = str(error).removesuffix(f" {error.command}")
+        print_message(plain(as_typed(_in_a_file(said, typed), typed), _LONGEST_MESSAGE), error.command)
         return BAD_INPUT
     except KeyboardInterrupt:
         print_message("interrupted")

@@ -71,7 +71,7 @@ def _library() -> Library | None:
 def _warn(why: str) -> None:
     warnings.warn(
         f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, "
-        f"clang, or the package ziglang) {installing.line()} builds them",
+        f"clang, or the package ziglang) this builds them: {installing.line()}",
         RuntimeWarning,
         stacklevel=4,
     )

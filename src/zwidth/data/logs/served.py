@@ -105,9 +105,8 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
 
 def not_installed(path: Path) -> InputError:
     """Of a file that takes the library of the extra `logs`."""
-    return InputError(
-        f"{path} cannot be read: a library for ROS bags and MCAP is not installed; {installing.line('logs')}"
-    )
+    said = f"{path} cannot be read: a library for ROS bags and MCAP is not installed; type"
+    return InputError(said, installing.line("logs"))
 
 
 def records(file: IO[bytes], path: Path) -> Iterator[_Record]:

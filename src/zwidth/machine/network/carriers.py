@@ -169,7 +169,7 @@ class Zenoh(Channel):
             zenoh: Any = importlib.import_module("zenoh")
         except ImportError:
             raise InputError(
-                f"Eclipse Zenoh is not installed; {installing.line('networks')}, or take UDP"
+                "Eclipse Zenoh is not installed; take UDP, or type", installing.line("networks")
             ) from None
         config = zenoh.Config()
         config.insert_json5("mode", '"peer"')

@@ -45,5 +45,5 @@ def need_libraries() -> None:
     for module, name in (("panel", "Panel"), ("bokeh", "Bokeh")):
         if find_spec(module) is None:
             raise InputError(
-                f"the explorer page is drawn by {name}, which is not installed: {installing.line('explore')}"
+                f"{name}, which draws the explorer page, is not installed; type", installing.line("explore")
             )

@@ -196,8 +196,8 @@ def on_cluster(compute: Compute, ready: Any, places: list[Place], address: str) 
         import distributed
     except ImportError:
         raise InputError(
-            f"a cluster needs Dask, which is not installed: {installing.line('maps')}; "
-            "without an address all is computed on this machine"
+            "a cluster needs Dask, which is not installed; leave out the address, or type",
+            installing.line("maps"),
         ) from None
     dask: Any = distributed
     try:

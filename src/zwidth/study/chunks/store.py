@@ -101,8 +101,8 @@ def _opened(path: Path, layout: Layout) -> Any:
         import zarr
     except ImportError:
         raise InputError(
-            f"a {layout.what} on disk needs zarr, which is not installed: {installing.line('maps')}; "
-            f"without a file the {layout.what} is computed all the same"
+            f"a {layout.what} on disk needs zarr, which is not installed; leave out the file, or type",
+            installing.line("maps"),
         ) from None
     with _on_disk(path, layout):
         if path.exists() and any(path.iterdir()):

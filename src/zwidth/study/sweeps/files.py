@@ -141,7 +141,7 @@ def _read_zarr(path: Path) -> tuple[xr.Dataset, str]:
         import zarr
     except ImportError:
         raise InputError(
-            f"{path} is read by zarr, which is not installed: {installing.line('maps')}"
+            f"{path} is read by zarr, which is not installed; type", installing.line("maps")
         ) from None
     group: Any = zarr.open_group(path, mode="r")
     _refuse_foreign(path, group.attrs.get("format"))

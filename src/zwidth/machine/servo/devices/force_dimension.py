@@ -191,8 +191,8 @@ def _library() -> Any:
     """The package's module of the maker's functions."""
     if importlib.util.find_spec(_PACKAGE) is None:
         raise InputError(
-            "the package that calls the library of Force Dimension is not installed; "
-            + installing.line(package="forcedimension-core")
+            "the package that calls the library of Force Dimension is not installed; type",
+            installing.line(package="forcedimension-core"),
         )
     said = io.StringIO()
     try:

@@ -43,7 +43,7 @@ def open_port(port: str, baud: int) -> Any:
         serial: Any = importlib.import_module("serial")
     except ImportError:
         raise InputError(
-            f"pyserial is not installed, which opens serial ports; {installing.line('serve')}"
+            "pyserial, which opens serial ports, is not installed; type", installing.line("serve")
         ) from None
     try:
         opened = serial.Serial(port, baud, timeout=0, write_timeout=0, inter_byte_timeout=0, exclusive=True)

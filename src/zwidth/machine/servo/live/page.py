@@ -118,7 +118,7 @@ def library(module: str, name: str) -> Any:
         return importlib.import_module(module)
     except ImportError:
         raise InputError(
-            f"{name} is not installed; {installing.line('serve')}, or watch in the terminal without it"
+            f"{name} is not installed; watch in the terminal, or type", installing.line("serve")
         ) from None
 
 
