@@ -24,7 +24,7 @@ def line(extra: str = "", package: str = "") -> str:
     Parameters
     ----------
     extra
-        Of the optional dependencies in pyproject.toml; without one zwidth itself, anew.
+        Of the optional dependencies in pyproject.toml.
     package
         In the place of zwidth, another package.
     """

@@ -22,8 +22,6 @@ from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple
 
-from zwidth import installing
-
 PACKAGE = Path(__file__).parent.parent
 BUILT = Path(__file__).with_name("steps.dll" if os.name == "nt" else "steps.so")
 
@@ -70,8 +68,8 @@ def _library() -> Library | None:
 
 def _warn(why: str) -> None:
     warnings.warn(
-        f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, "
-        f"clang, or the package ziglang) this builds them: {installing.line()}",
+        f"the step functions run as plain Python, a hundred times as slow: {why}; a C compiler (gcc, "
+        "clang, or the package ziglang) builds them where zwidth is installed from its source",
         RuntimeWarning,
         stacklevel=4,
     )
