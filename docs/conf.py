@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import sys
-from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ sys.path.insert(0, str(HERE / "_ext"))
 
 import tables  # noqa: E402
 
+from zwidth import __version__  # noqa: E402
 from zwidth.quantity.answered import declared  # noqa: E402
 from zwidth.quantity.text import unit_text  # noqa: E402
 
@@ -21,7 +21,7 @@ tables.write()  # before Sphinx looks for what the pages include
 project = "zwidth"
 author = "The zwidth developers"
 copyright = "The zwidth developers, Apache-2.0"
-release = version = installed_version("zwidth")
+release = version = __version__
 
 extensions = [
     "myst_parser",

@@ -114,14 +114,6 @@ def test_a_room_is_one_under_both_of_its_names():
             import_module(name)
 
 
-def test_version_is_the_one_of_the_distribution():
-    from importlib.metadata import version
-
-    declared = PYPROJECT["project"]["version"]
-    assert version("zwidth") == declared
-    assert f"## {declared}" in _text("CHANGELOG.md")
-
-
 def test_what_is_shipped_beside_the_code():
     """Type checkers find the marker, the catalogue its data; checkers schemas, laws mains, pages modules."""
     data = ("model/device/catalogue.toml", "data/gains/families.toml", "checker/schemas/spring.json")

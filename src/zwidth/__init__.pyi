@@ -59,6 +59,8 @@ from zwidth.study import maps as maps
 from zwidth.study.maps import z_width as z_width
 from zwidth.study.sweeps.run import sweep as sweep
 
+__version__: str
+
 plan = plan_identification
 operators = operator
 limit = passive_limit

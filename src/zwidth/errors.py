@@ -11,7 +11,9 @@ from zwidth.showing import printable
 
 
 class InputError(ValueError):
-    """A parameter, file or command that cannot be used as given."""
+    """A parameter, file or command that cannot be used as given; `command` is what to type first."""
 
-    def __init__(self, message: object = "") -> None:
-        super().__init__(printable(str(message)))  # it may quote a file or its name
+    def __init__(self, message: object = "", command: str = "") -> None:
+        said = f"{message}: {command}" if command else str(message)
+        super().__init__(printable(said))  # it may quote a file or its name
+        self.command = printable(command)

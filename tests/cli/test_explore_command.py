@@ -52,6 +52,9 @@ def test_ctrl_c_is_heard_by_whichever_thread_takes_it(run):
     assert ran.stdout == "heard\n"
 
 
-def test_without_its_libraries_it_says_what_to_install(refused, monkeypatch):
+def test_without_its_libraries_it_says_what_to_install(run, monkeypatch):
+    """On a line of its own, which may be wider than the terminal: it is copied."""
     monkeypatch.setattr("zwidth.show.explorer.notebook.find_spec", lambda _: None)
-    assert "pip install 'zwidth[explore]'" in refused("explore --no-browser")
+    monkeypatch.setattr("zwidth.installing.line", lambda extra: f"{'folder/' * 40}pip install '.[{extra}]'")
+    said = run("explore --no-browser", 2).err
+    assert said.endswith(f"; type:\n  {'folder/' * 40}pip install '.[explore]'\n")

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 from typing import NoReturn
 
+from zwidth import __version__
 from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
 from zwidth.cli.parsing import Help, as_typed, joined
@@ -50,7 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         with answers_as_typed():
             return _run(typed)
     except InputError as error:
-        print_message(plain(as_typed(_in_a_file(str(error), typed), typed), _LONGEST_MESSAGE))
+        said = str(error).removesuffix(f" {error.command}")
+        print_message(plain(as_typed(_in_a_file(said, typed), typed), _LONGEST_MESSAGE), error.command)
         return BAD_INPUT
     except KeyboardInterrupt:
         print_message("interrupted")
@@ -100,7 +102,9 @@ def _parser(argv: Sequence[str]) -> Parser:
         formatter_class=Help,
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and leave")
+    parser.add_argument(
+        "--version", action="version", version=f"zwidth {__version__}", help="print the version and leave"
+    )
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
     for name, command in COMMANDS.items():
         child = commands.add_parser(
@@ -119,14 +123,6 @@ def _parser(argv: Sequence[str]) -> Parser:
 
 
 _CHILD = "parser of the command"
-
-
-class _Version(argparse.Action):
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from importlib.metadata import version  # only where it is asked for
-
-        print(f"zwidth {version('zwidth')}")
-        parser.exit()
 
 
 def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> str:

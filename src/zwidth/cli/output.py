@@ -115,10 +115,11 @@ def _print_lines(lines: Iterable[str]) -> None:
         print("\n".join(line.rstrip() for line in lines))
 
 
-def print_message(message: object) -> None:
-    """A message of this program on standard error, in lines that fit the terminal."""
+def print_message(message: object, command: str = "") -> None:
+    """A message of this program on standard error, in lines that fit; a command in one, to be copied."""
+    lines = [*message_lines(f"zwidth: {message}"), *[f"  {spelled(command)}"] * bool(command)]
     with quiet_pipe(sys.stderr):
-        print("\n".join(message_lines(f"zwidth: {message}")), file=sys.stderr)
+        print("\n".join(lines), file=sys.stderr)
 
 
 def message_lines(text: str) -> list[str]:

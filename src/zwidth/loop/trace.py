@@ -8,12 +8,11 @@ those just after it.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from zwidth import __version__
 from zwidth.loop import kernel, two_bodies, two_masses
 from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Frame, Setup
@@ -354,17 +353,11 @@ def _beyond_samples(setup: Setup, velocity: Array) -> float:
     return float(np.max(np.maximum(bend - ends, low - bend), initial=0.0))
 
 
-@cache  # it is read from a file
-def own_version() -> str:
-    """Of this package."""
-    return version("zwidth")
-
-
 def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
     device, plant = setup.device, setup.frame.plant
     result: dict[str, Any] = {
         "format": FORMAT,
-        "zwidth_version": own_version(),
+        "zwidth_version": __version__,
         "device": device.name,
         "environment": setup.environment.describe(device.motion),
         "operator": setup.operator.describe(device.motion),

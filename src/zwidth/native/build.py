@@ -68,8 +68,8 @@ def _library() -> Library | None:
 
 def _warn(why: str) -> None:
     warnings.warn(
-        f"the step functions run as plain Python, a hundred times as slow: {why}; with a C compiler (gcc, "
-        "clang, or the package ziglang) `pip install` builds them",
+        f"the step functions run as plain Python, a hundred times as slow: {why}; a C compiler (gcc, "
+        "clang, or the package ziglang) builds them where zwidth is installed from its source",
         RuntimeWarning,
         stacklevel=4,
     )

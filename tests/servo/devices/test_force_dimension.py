@@ -172,7 +172,7 @@ def test_a_device_that_gives_no_position(device):
 def test_the_package_is_missing(monkeypatch):
     forget()
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(InputError, match="pip install forcedimension-core"):
+    with pytest.raises(InputError, match="install forcedimension-core"):
         ForceDimension().open(1e-3)
 
 

@@ -18,6 +18,7 @@ from zlib import crc32
 import numpy as np
 import pyarrow as pa
 
+from zwidth import installing
 from zwidth.data.logs.contents import COLUMNS, Head, Part, from_json, head_in, rows_lost
 from zwidth.data.logs.table import PIECE, Finding, Table, Values
 from zwidth.errors import InputError
@@ -36,7 +37,6 @@ MESSAGE_HEAD = Struct("<HIQQ")
 CHUNK_HEAD = Struct("<QQQI")
 """Times of the first and of the last message, bytes when expanded, their checksum."""
 
-INSTALL = "reading ROS bags and MCAP takes a library that is not installed: pip install 'zwidth[logs]'"
 ZSTD = b"\x28\xb5\x2f\xfd"
 """What begins so is compressed."""
 
@@ -101,6 +101,12 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
     # who writes a file anew may put the end before the last chunk
     if (promised.get("rows"), promised.get("events")) == (str(rows), str(events)):
         yield Part(np.empty((0, len(head.columns))), [], last=True)
+
+
+def not_installed(path: Path) -> InputError:
+    """Of a file that takes the library of the extra `logs`."""
+    said = f"{path} cannot be read: a library for ROS bags and MCAP is not installed; type"
+    return InputError(said, installing.line("logs"))
 
 
 def records(file: IO[bytes], path: Path) -> Iterator[_Record]:
@@ -395,7 +401,7 @@ class Mcap:
         try:
             from rosbags import typesys
         except ImportError:
-            raise InputError(f"{self.path} cannot be read: {INSTALL}") from None
+            raise not_installed(self.path) from None
         store = typesys.get_typestore(typesys.Stores.EMPTY if text else typesys.Stores.LATEST)
         try:
             if form.endswith("idl"):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from zwidth import __version__
 from zwidth.errors import InputError
 from zwidth.loop.pair.kernel import run_pair
 from zwidth.loop.pair.setup import Holder, PairSetup, prepare_pair
@@ -24,7 +25,6 @@ from zwidth.loop.trace import (
     attributes_of,
     before_overflow,
     instants,
-    own_version,
     values_of,
 )
 from zwidth.model.device import FrictionCurve
@@ -239,7 +239,7 @@ def _attrs(setup: PairSetup) -> dict[str, Any]:
     pair = setup.pair
     result: dict[str, Any] = {
         "format": FORMAT,
-        "zwidth_version": own_version(),
+        "zwidth_version": __version__,
         "coupling": pair.describe(),
         "motion": pair.motion,
         "sample_period_s": float(pair.sample_period),

@@ -20,6 +20,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.machine.network.channel import LARGEST, Channel
 
@@ -168,7 +169,7 @@ class Zenoh(Channel):
             zenoh: Any = importlib.import_module("zenoh")
         except ImportError:
             raise InputError(
-                "Eclipse Zenoh is not installed; pip install 'zwidth[networks]', or take UDP"
+                "Eclipse Zenoh is not installed; take UDP, or type", installing.line("networks")
             ) from None
         config = zenoh.Config()
         config.insert_json5("mode", '"peer"')

@@ -16,9 +16,9 @@ from datetime import UTC, datetime
 from math import inf, nan
 from typing import Any, Literal, cast
 
+from zwidth import __version__
 from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
-from zwidth.loop.trace import own_version
 from zwidth.machine.servo import cycle
 from zwidth.machine.servo.connection import (
     CompiledConnection,
@@ -397,7 +397,7 @@ def about(
     """Texts and numbers, units in the keys."""
     x = "rad" if device.motion == "rotary" else "m"
     return {
-        "zwidth_version": own_version(),
+        "zwidth_version": __version__,
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "device": device.name,
         "motion": device.motion,

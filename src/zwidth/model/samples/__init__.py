@@ -83,7 +83,7 @@ EXAMPLES = (
     ),
     Example(
         ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb"),
-        "three lessons for a class, with pip install jupyterlab",
+        "three lessons for a class; the package jupyterlab opens them",
         "jupyter lab lesson-1-sampling.ipynb",
     ),
 )

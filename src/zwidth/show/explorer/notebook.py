@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib.util import find_spec
 from typing import Any
 
+from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import Environment
@@ -44,5 +45,5 @@ def need_libraries() -> None:
     for module, name in (("panel", "Panel"), ("bokeh", "Bokeh")):
         if find_spec(module) is None:
             raise InputError(
-                f"the explorer page is drawn by {name}, which is not installed: pip install 'zwidth[explore]'"
+                f"{name}, which draws the explorer page, is not installed; type", installing.line("explore")
             )

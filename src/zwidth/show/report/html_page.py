@@ -12,6 +12,7 @@ from math import isfinite
 from platform import python_version
 from typing import Any
 
+from zwidth import __version__
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.result import Answer
 from zwidth.passivity.verdict import Verdict
@@ -222,7 +223,7 @@ _LIBRARIES = ("matplotlib", "numpy", "python-flint", "scipy")
 def _versions() -> list[tuple[str, str]]:
     """(name, version) of zwidth, Python and the libraries that had a part in it."""
     return [
-        ("zwidth", version("zwidth")),
+        ("zwidth", __version__),
         ("Python", python_version()),
         *((name, version(name)) for name in _LIBRARIES),
     ]

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from zwidth import installing
 from zwidth.errors import InputError
 
 Place = tuple[int, ...]
@@ -195,8 +196,8 @@ def on_cluster(compute: Compute, ready: Any, places: list[Place], address: str) 
         import distributed
     except ImportError:
         raise InputError(
-            'a cluster needs Dask, which is not installed: pip install "zwidth[maps]"; '
-            "without an address all is computed on this machine"
+            "a cluster needs Dask, which is not installed; leave out the address, or type",
+            installing.line("maps"),
         ) from None
     dask: Any = distributed
     try:

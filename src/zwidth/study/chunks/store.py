@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.study.chunks.layout import Layers, Layout, Place
 from zwidth.writing import first_line
@@ -100,8 +101,8 @@ def _opened(path: Path, layout: Layout) -> Any:
         import zarr
     except ImportError:
         raise InputError(
-            f'a {layout.what} on disk needs zarr, which is not installed: pip install "zwidth[maps]"; '
-            f"without a file the {layout.what} is computed all the same"
+            f"a {layout.what} on disk needs zarr, which is not installed; leave out the file, or type",
+            installing.line("maps"),
         ) from None
     with _on_disk(path, layout):
         if path.exists() and any(path.iterdir()):

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
 from zwidth.model.device import Device
@@ -140,7 +141,7 @@ def _read_zarr(path: Path) -> tuple[xr.Dataset, str]:
         import zarr
     except ImportError:
         raise InputError(
-            f'{path} is read by zarr, which is not installed: pip install "zwidth[maps]"'
+            f"{path} is read by zarr, which is not installed; type", installing.line("maps")
         ) from None
     group: Any = zarr.open_group(path, mode="r")
     _refuse_foreign(path, group.attrs.get("format"))

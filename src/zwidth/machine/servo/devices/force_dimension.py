@@ -17,6 +17,7 @@ import math
 from contextlib import redirect_stderr
 from typing import Any, ClassVar, Literal
 
+from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import (
     GARBLED,
@@ -190,8 +191,8 @@ def _library() -> Any:
     """The package's module of the maker's functions."""
     if importlib.util.find_spec(_PACKAGE) is None:
         raise InputError(
-            "the package that calls the library of Force Dimension is not installed; "
-            "pip install forcedimension-core"
+            "the package that calls the library of Force Dimension is not installed; type",
+            installing.line(package="forcedimension-core"),
         )
     said = io.StringIO()
     try:

@@ -13,6 +13,7 @@ from abc import abstractmethod
 from contextlib import suppress
 from typing import Any
 
+from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import (
     CLOSED,
@@ -42,7 +43,7 @@ def open_port(port: str, baud: int) -> Any:
         serial: Any = importlib.import_module("serial")
     except ImportError:
         raise InputError(
-            "pyserial is not installed, which opens serial ports; pip install 'zwidth[serve]'"
+            "pyserial, which opens serial ports, is not installed; type", installing.line("serve")
         ) from None
     try:
         opened = serial.Serial(port, baud, timeout=0, write_timeout=0, inter_byte_timeout=0, exclusive=True)

@@ -11,6 +11,7 @@ from threading import Event, Thread
 from types import SimpleNamespace, TracebackType
 from typing import Any
 
+from zwidth import installing
 from zwidth.errors import InputError
 
 HOST = "127.0.0.1"
@@ -117,7 +118,7 @@ def library(module: str, name: str) -> Any:
         return importlib.import_module(module)
     except ImportError:
         raise InputError(
-            f"{name} is not installed; pip install 'zwidth[serve]', or watch in the terminal without it"
+            f"{name} is not installed; watch in the terminal, or type", installing.line("serve")
         ) from None
 
 

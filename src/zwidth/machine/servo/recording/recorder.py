@@ -21,10 +21,10 @@ from zlib import crc32
 import numpy as np
 import pyarrow as pa
 
+from zwidth import __version__
 from zwidth.data.logs import served as layout
 from zwidth.data.logs.contents import ROWS_LOST, Head, as_json, from_json
 from zwidth.errors import InputError
-from zwidth.loop.trace import own_version
 from zwidth.machine.servo.live.rows import Rows, ros2_schema
 from zwidth.native.compiled import Array
 from zwidth.quantity.answered import answered
@@ -243,7 +243,7 @@ class McapFile:
         self._index = bytearray()
         self._first = self._last = 0
         self._metadata: list[tuple[int, int, str]] = []
-        described = record(layout.HEADER, text("ros2") + text(f"zwidth {own_version()}"))
+        described = record(layout.HEADER, text("ros2") + text(f"zwidth {__version__}"))
         self._give(layout.MAGIC + described)
         said = head.text()
         self._say(layout.HEAD, {"json": said, "crc32": str(crc32(said.encode()))})

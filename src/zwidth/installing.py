@@ -1,0 +1,85 @@
+"""What to type for a library that zwidth does without: where it runs, and whatever it was installed from.
+
+pip keeps in direct_url.json (PEP 610) the folder, file, address or commit that a package came from.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import shutil
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+_WINDOWS = os.name == "nt"
+
+
+def line(extra: str = "", package: str = "") -> str:
+    """``pip install 'zwidth[extra]'`` as it works here.
+
+    Parameters
+    ----------
+    extra
+        Of the optional dependencies in pyproject.toml.
+    package
+        In the place of zwidth, another package.
+    """
+    return " ".join([_pip(), *map(_typed, [package] if package else _zwidth(extra))])
+
+
+def _zwidth(extra: str) -> list[str]:
+    from importlib.metadata import PackageNotFoundError, distribution
+    from urllib.parse import urlsplit
+    from urllib.request import url2pathname
+
+    named = f"[{extra}]" if extra else ""
+    libraries: list[str] = []
+    try:
+        found = distribution("zwidth")
+        libraries = [one.partition(";")[0] for one in found.requires or () if f"extra == '{extra}'" in one]
+        told: dict[str, Any] = json.loads(found.read_text("direct_url.json") or "{}")
+    except PackageNotFoundError:  # the source is on PYTHONPATH
+        told = {"url": Path(__file__).resolve().parents[2].as_uri(), "dir_info": {}}
+    url = told.get("url", "")
+    path = Path(url2pathname(urlsplit(url).path))
+    if url.startswith("file:") and not path.exists() and libraries:
+        return libraries  # what it was installed from is gone
+    if "dir_info" in told:
+        place = "." if path.exists() and path.samefile(Path.cwd()) else str(path)
+        return [*["-e"] * bool(told["dir_info"].get("editable")), place + named]
+    if "vcs_info" in told:
+        url = f"{told['vcs_info']['vcs']}+{url}@{told['vcs_info']['commit_id']}"
+    if "subdirectory" in told:
+        url += f"#subdirectory={told['subdirectory']}"
+    return [f"zwidth{named} @ {url}" if url else f"zwidth{named}"]
+
+
+def _pip() -> str:
+    """``pip install`` for the Python that runs, by the shortest name that leads to it."""
+    python = Path(sys.executable or "python")
+    if find_spec("pip") is None and shutil.which("uv"):  # whose environments have none
+        return f"uv pip install --python {_typed(_near(python))}"
+    for name, call in (("pip", "pip"), ("python", "python -m pip"), ("python3", "python3 -m pip")):
+        found = Path(shutil.which(name) or name)
+        if not found.is_absolute() or not found.parent.samefile(python.parent):
+            continue
+        # outside of a virtual environment several Pythons share a folder, and a pip is that of one of them
+        if sys.prefix != sys.base_prefix if name == "pip" else found.samefile(python):
+            return f"{call} install"
+    beside = shutil.which("pip", path=str(python.parent)) if sys.prefix != sys.base_prefix else None
+    return f"{_typed(_near(Path(beside)))} install" if beside else f"{_typed(_near(python))} -m pip install"
+
+
+def _near(path: Path) -> str:
+    """A path from the folder in which it will be typed, where it is below that."""
+    return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)
+
+
+def _typed(word: str) -> str:
+    if not _WINDOWS:
+        return shlex.quote(word)
+    return word if re.fullmatch(r"[\w.:\\/-]+", word) else f'"{word}"'
