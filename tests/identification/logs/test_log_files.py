@@ -638,14 +638,6 @@ def test_of_a_file_that_was_cut_its_whole_pieces_are_read(recording, tmp_path):
     assert any("the file is damaged" in f.text for f in log.findings)
 
 
-def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
-    path = mcap_of(tmp_path / "log.mcap", "joints", [(0.0, b"")])
-    for module in ("rosbags", "rosbags.highlevel", "rosbags.typesys"):
-        monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
-        zw.read_log(path)
-
-
 @pytest.mark.parametrize("suffix", ["nc", "parquet", "csv"])
 @pytest.mark.parametrize("rotary", [False, True])
 def test_traces_of_zwidth_are_logs(suffix, rotary, tmp_path):

@@ -1,0 +1,3 @@
+def line(extra: str) -> str:
+    """What to type for an extra."""
+    return f"pip install '.[{extra}]'"
