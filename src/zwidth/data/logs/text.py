@@ -34,7 +34,7 @@ from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
 _PIECE = 2**23
-_NULLS = rb" *(?:null|NULL|None|none|NA|N/A|#N/A|-)?"
+_NULLS = rb" *(?:null|NULL|None|none|NA|N/A|#N/A|-)? *"
 """What stands where a number is missing, for the quick reader."""
 
 _INSTANT = rb"(?:19|20)\d\d-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)?"
@@ -173,6 +173,7 @@ class Parser:
         for name in names:
             if layout.kind(name) == "text":
                 raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
+        self._mending = 0  # 1: rows of another length and empty cells; 2: words for no number, too
         self._by_cells = not _TYPES.keys() >= set(map(layout.kind, names))
         self._decimal = {name: decimal_of(layout.fields(name)) or layout.decimal for name in names}
         self._last = dict.fromkeys(names, float("nan"))
@@ -202,9 +203,10 @@ class Parser:
         broken = self.broken
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # numpy warns of a number that it guessed
-            for mended in (False, True):  # most files need no mending
+            for mending in range(self._mending, 3):  # what was enough for the lines before, or more
+                self._mending, self.broken = mending, broken
                 try:
-                    columns = self._parsed(self._even(lines) if mended else lines, mended)
+                    columns = self._parsed(self._even(lines) if self._mending else lines)
                 except (ValueError, Warning):
                     continue
                 self.rows += columns[self.names[0]].size
@@ -237,16 +239,16 @@ class Parser:
         ends, found = np.flatnonzero(data == ord("\n")), np.flatnonzero(data == ord(delimiter))
         if b'"' in lines and (np.searchsorted(np.flatnonzero(data == ord('"')), found) % 2).any():
             raise ValueError("a delimiter stands in quotes")
-        if (np.diff(np.searchsorted(found, ends), prepend=0) == signs).all():
-            return lines
-        rows = [row for row in lines.split(b"\n") if row.strip(b" \r")]
-        kept = [row for row in rows if row.count(delimiter) == signs]
-        self.broken += len(rows) - len(kept)
-        return b"".join(row + b"\n" for row in kept)
+        kept, since = [], 0
+        for k in np.flatnonzero(np.diff(np.searchsorted(found, ends), prepend=0) != signs):
+            begin, end = int(ends[k - 1]) + 1 if k else 0, int(ends[k]) + 1
+            self.broken += bool(lines[begin:end].strip(b" \r\n"))
+            kept.append(lines[since:begin])
+            since = end
+        return b"".join([*kept, lines[since:]])
 
-    def _parsed(self, lines: bytes, mended: bool) -> dict[str, Values]:
-        """The columns; an error where a row has another number of fields, or a cell is not written plainly.
-        Where it is to be mended, a cell without a number in a column of numbers is none."""
+    def _parsed(self, lines: bytes) -> dict[str, Values]:
+        """The columns; an error where a row has another number of fields, or a cell is not plain."""
         layout = self.layout
         if layout.delimiter == layout.decimal or lines.count(b"\r") > lines.count(b"\r\n"):
             raise ValueError("it is not clear what a field or a row is")
@@ -255,19 +257,23 @@ class Parser:
         columns: dict[str, Values] = {}
         for kind in dict.fromkeys(map(layout.kind, self.names)):
             names = [name for name in dict.fromkeys(self.names) if layout.kind(name) == kind]
-            columns |= self._loaded(self._numbers(lines, mended) if kind == "float" else lines, names, kind)
+            columns |= self._loaded(self._numbers(lines) if kind == "float" else lines, names, kind)
         if len({values.size for values in columns.values()}) > 1:
             raise ValueError("it is not clear what a row is")
         return columns
 
-    def _numbers(self, lines: bytes, mended: bool) -> bytes:
-        """The same with the decimal point, and with a word for a missing number."""
+    def _numbers(self, lines: bytes) -> bytes:
+        """The same with the decimal point, and NaN where a number is missing."""
         if self.layout.decimal == ",":
             lines = lines.translate(_SWAPPED)  # a point groups there, and becomes what is refused
-        if mended and len(self.layout.names) > 1:
-            sign = re.escape(self.layout.delimiter.encode())
-            missing = rb"([\n" + sign + rb"])" + _NULLS + rb"(?= *(?:" + sign + rb"|\r?\n))"
-            lines = re.sub(missing, rb"\1nan", b"\n" + lines)
+        if not self._mending or len(self.layout.names) == 1:
+            return lines
+        sign, lines = self.layout.delimiter.encode(), b"\n" + lines
+        if self._mending == 2:
+            pattern = rb"([\n%b])" + _NULLS + rb"(?=[%b\r\n])"
+            lines = re.sub(pattern % (re.escape(sign), re.escape(sign)), rb"\1", lines)
+        for one, other in ((sign, sign), (sign, sign), (sign, b"\r\n"), (sign, b"\n"), (b"\n", sign)):
+            lines = lines.replace(one + other, one + b"nan" + other)
         return lines
 
     def _loaded(self, lines: bytes, names: list[str], kind: str) -> dict[str, Values]:
