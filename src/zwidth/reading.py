@@ -6,14 +6,17 @@ other files of the reader's.  Both are refused before anything is expanded or op
 
 from __future__ import annotations
 
+import bz2
 import re
 from collections.abc import Iterable
+from io import BytesIO
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zlib import decompressobj
 
 from zwidth.errors import InputError
+from zwidth.libraries import library, parquet
 from zwidth.showing import printable
 
 if TYPE_CHECKING:
@@ -33,6 +36,14 @@ _DEFLATE, _MOST_DEFLATED = 1, 1032
 """The filter's number in HDF5, and the most bytes that it makes of one."""
 
 _STEP = 2**20
+
+
+def unpacking(path: Path, codec: str, piece: bytes | None = None) -> Any:
+    """A stream of what a file, or a piece of it, expands to: zstd, lz4, or bz2."""
+    if codec == "bz2":
+        return bz2.open(path if piece is None else BytesIO(piece))
+    pa = library("pyarrow", f"{path} is not read: {codec}, by which it is compressed,")
+    return pa.CompressedInputStream(str(path) if piece is None else pa.BufferReader(piece), codec)
 
 
 def shown_only(data: xr.Dataset, path: Path) -> xr.Dataset:
@@ -133,9 +144,7 @@ _LIST = re.compile(r"\.list\.(element|item)$")
 
 def check_parquet(path: Path, columns: set[str] | None = None) -> None:
     """Refuse a file of Parquet that declares more than it can hold, in these columns or in all."""
-    import pyarrow.parquet as pq  # takes its time
-
-    about = pq.read_metadata(path)
+    about = parquet(f"{path} is not read").read_metadata(path)
     parts = [
         part
         for k in range(about.num_row_groups)

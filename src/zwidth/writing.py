@@ -22,6 +22,7 @@ from types import SimpleNamespace
 from typing import IO
 
 from zwidth.errors import InputError
+from zwidth.libraries import parquet
 
 try:
     import fcntl
@@ -36,6 +37,8 @@ _ANYBODY = 0o666
 
 def check_target(path: Path, force: bool, how: str = "force=True") -> None:
     """Refuse a place where nothing can be written, or a file would be lost, before anything is computed."""
+    if path.suffix.lower() == ".parquet":
+        parquet(f"{path} is not written")
     try:
         if b"\0" in os.fsencode(path):
             raise InputError(f"{path} cannot be written: a name has no zero bytes")

@@ -24,7 +24,7 @@ import xarray as xr
 import zwidth as zw
 from zwidth.data.logs.columns import name_and_unit
 from zwidth.data.logs.table import LEFT_OUT
-from zwidth.data.logs.text import text_table
+from zwidth.data.logs.text import Parser, text_table
 
 HEADER = ("time_s", "position_mm", "force_N")
 UNITS = {"time": "s", "position": "mm", "hand_force": "N"}
@@ -126,6 +126,75 @@ def test_texts_with_scars(recording, tmp_path):
         log = zw.read_log(path)
         assert (log.runs, log.samples) == counts
         assert kinds <= {finding.kind for finding in log.findings}
+
+
+def column_of(path: Path, text: str, name: str = "position_m") -> Any:
+    path.write_bytes(text.encode())
+    return np.concatenate([part for (part,) in text_table(path).read((name,))])
+
+
+ODD = (
+    "9007199254740993 18446744073709551615 0.30000000000000004 3.141592653589793116 1.7976931348623159e308 "
+    "2.2250738585072011e-308 4.9406564584124654e-324 2.4703282292062327e-324 1e-400 1e400 -1e400 inf "
+    "-Infinity +1 -0 1. .5 1E5 1e-5 0." + "0" * 400 + "1 " + "1" * 310
+).split()
+
+
+def test_numbers_in_text_are_those_of_python(tmp_path):
+    """To the last bit; white space and quotes around a number are none of it."""
+    draw = np.random.default_rng(2)
+    drawn = np.frombuffer(draw.bytes(16000))
+    texts = [
+        *ODD,
+        *map(repr, drawn.tolist()),
+        *(f"{x:.{k % 20}f}" for k, x in enumerate(draw.normal(size=2000))),
+    ]
+    for around in ("{}", " {} ", '"{}"'):
+        lines = [f"{around.format(t)},{t}" for t in ["0.5"] * 2000 + texts]
+        found = column_of(tmp_path / "log.csv", "position_m,other\n" + "\n".join(lines) + "\n")
+        assert found[2000:].tobytes() == np.array(list(map(float, texts))).tobytes()
+
+
+@pytest.mark.parametrize("text", ["0x10", "1_000", "nan(1)", "1e", "1..2", "--1", "1 2", "abc", "1%", "(1)"])
+def test_what_is_no_number_in_text_is_refused(text, tmp_path):
+    rows = "time_s,position_m\n" + "".join(f"{k / 1000},{k}\n" for k in range(3000))
+    with pytest.raises(zw.InputError, match=r"holds text near line 2504: "):
+        column_of(tmp_path / "log.csv", rows.replace(",2502\n", f",{text}\n"))
+
+
+@pytest.mark.parametrize(
+    ("name", "row", "odd", "broken"),
+    [
+        ("missing", "{0:.3f},{1},0.5", "{0:.3f},,", 0),
+        ("words", "{0:.3f},{1},0.5", "{0:.3f}, NA ,null", 0),
+        ("short", "{0:.3f},{1},0.5", "{0:.3f},{1}", 30),
+        ("long", "{0:.3f},{1},0.5", "{0:.3f},{1},0.5,0.5", 30),
+        ("blank", "{0:.3f},{1},0.5", "  \n", 0),
+        ("quotes", '"{0:.3f}","{1}","note"', '"{0:.3f}","{1}"', 30),
+        ("dates", "2026-11-26 10:15:03.{1:05d},{1},0.5", "2026-11-26T10:15:03.{1:05d},,", 0),
+        ("stamps", "176000000000{1:07d},{1},0.5", "176000000000{1:07d},{1}", 30),
+    ],
+)
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_plain_rows_are_read_whole_columns_at_a_time(name, row, odd, broken, end, tmp_path, monkeypatch):
+    """And not cell by cell, which takes its time, for the sake of some rows that are not whole."""
+    monkeypatch.setattr(Parser, "_cell_by_cell", None)
+    lines = [(odd if k % 100 == 99 else row).format(k / 1000, k) for k in range(3000)]
+    text = "\n".join(["time,position_m,force_N", *lines, ""]).replace("\n", end)
+    (tmp_path / "log.csv").write_bytes(text.encode())
+    table = text_table(tmp_path / "log.csv")
+    time, position = map(np.concatenate, zip(*table.read(("time", "position_m")), strict=True))
+    whole = [k for k in range(3000) if k % 100 != 99]
+    assert (position[np.isin(position, whole)] == whole).all()
+    assert time.size == 3000 - (30 if broken or name == "blank" else 0)
+    assert sum(finding.samples for finding in table.notes.values()) == broken
+
+
+def test_a_quote_that_is_never_closed_takes_no_other_rows_with_it(tmp_path):
+    rows = [f"{k / 1000},{k},ok" for k in range(300)]
+    rows[40], rows[90] = '0.04,40,"he let go', '0.09,90,so he said"'
+    found = column_of(tmp_path / "log.csv", "time_s,position_m,note\n" + "\n".join(rows) + "\n")
+    assert (found == np.arange(300)).all()
 
 
 def test_dates_and_integers_in_text(recording, tmp_path):
@@ -636,14 +705,6 @@ def test_of_a_file_that_was_cut_its_whole_pieces_are_read(recording, tmp_path):
     log = zw.read_log(path, **asked)
     assert log.runs == 2
     assert any("the file is damaged" in f.text for f in log.findings)
-
-
-def test_without_the_library_for_bags_its_name_is_said(tmp_path, monkeypatch):
-    path = mcap_of(tmp_path / "log.mcap", "joints", [(0.0, b"")])
-    for module in ("rosbags", "rosbags.highlevel", "rosbags.typesys"):
-        monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
-        zw.read_log(path)
 
 
 @pytest.mark.parametrize("suffix", ["nc", "parquet", "csv"])

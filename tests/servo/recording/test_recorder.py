@@ -1,5 +1,7 @@
 """What a recorder writes is what the loop wrote, to the last bit; what it could not write it says."""
 
+import sys
+
 import numpy as np
 import pytest
 from full_disk import full_disk
@@ -97,8 +99,15 @@ def test_a_full_disk_ends_the_recording_and_nothing_else(tmp_path):
     assert found.samples == done.rows == 0
 
 
-def test_a_table_that_others_read(record, tmp_path):
-    record(drawn(300), {"event": "began"})
+@pytest.mark.parametrize("compressed", [True, False])
+def test_a_table_that_others_read(compressed, record, tmp_path, monkeypatch):
+    """Compressed or, where nothing is installed that could, not."""
+    with monkeypatch.context() as without:
+        if not compressed:
+            without.setitem(sys.modules, "pyarrow", None)
+        found = record(drawn(300), {"event": "began"})
+        assert found.whole
+    assert ((tmp_path / "run.mcap").stat().st_size < 300 * 8 * 17) == compressed
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 

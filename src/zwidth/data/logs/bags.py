@@ -23,12 +23,12 @@ from struct import unpack
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import pyarrow as pa
 
-from zwidth.data.logs.served import MAGIC, ZSTD, Mcap, not_installed
+from zwidth.data.logs.served import MAGIC, ZSTD, Mcap
 from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, nearest, readable
 from zwidth.errors import InputError
-from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
+from zwidth.libraries import library
+from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion, unpacking
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -88,12 +88,9 @@ def _opened(path: Path) -> Any:
     if files:
         return Mcap(path, files)
     check_bag(path)
-    try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise not_installed(path) from None
-    return AnyReader([path], default_typestore=get_typestore(Stores.LATEST))
+    highlevel = library("rosbags.highlevel", f"{path} is not read: a bag of ROS")
+    typesys = library("rosbags.typesys", f"{path} is not read: a bag of ROS")
+    return highlevel.AnyReader([path], default_typestore=typesys.get_typestore(typesys.Stores.LATEST))
 
 
 def _mcap_files(path: Path) -> list[Path]:
@@ -342,7 +339,7 @@ def check_bag(path: Path) -> None:
 
 
 def _check_packed(path: Path) -> None:
-    with Bounded(path, pa.input_stream(str(path), compression="zstd")) as whole:
+    with Bounded(path, unpacking(path, "zstd")) as whole:
         if whole.read(_STEP).startswith(MAGIC[:5]):
             raise InputError(f"{path} is not read: compressed are its pieces, and it again; unpack it first")
         while whole.read(_STEP):
@@ -356,7 +353,7 @@ def check_messages(path: Path, reader: Any) -> None:
             continue
         for store in part.storage.storages:
             for _, _, data in store.messages(store.connections):
-                check_chunk(path, _grown(data, "zstd"))
+                check_chunk(path, _grown(path, data, "zstd"))
 
 
 def _check_rosbag1(path: Path) -> None:
@@ -366,7 +363,7 @@ def _check_rosbag1(path: Path) -> None:
             raise InputError(f"{path} is not read: its index leads to where no piece of it begins")
         for piece in pieces.values():
             check_chunk(path, piece.declared)
-            check_chunk(path, _expanded(file, piece))
+            check_chunk(path, _expanded(path, file, piece))
     check_expansion(path, sum(piece.declared for piece in pieces.values()))
 
 
@@ -406,18 +403,18 @@ def _part(record: IO[bytes]) -> bytes:
     return record.read(int.from_bytes(record.read(4), "little"))
 
 
-def _expanded(file: IO[bytes], piece: _Piece) -> int:
+def _expanded(path: Path, file: IO[bytes], piece: _Piece) -> int:
     """[bytes] What it really becomes."""
     if piece.codec not in _CODECS:
         return 0
     file.seek(piece.start)
-    return _grown(file.read(min(piece.size, fstat(file.fileno()).st_size)), piece.codec)
+    return _grown(path, file.read(min(piece.size, fstat(file.fileno()).st_size)), piece.codec)
 
 
-def _grown(packed: bytes, codec: str) -> int:
+def _grown(path: Path, packed: bytes, codec: str) -> int:
     """[bytes] What is packed becomes; counting ends beyond what is read at once."""
     total = 0
-    with pa.CompressedInputStream(pa.BufferReader(packed), codec) as stream:
+    with unpacking(path, codec, packed) as stream:
         while total <= LARGEST_CHUNK and (part := stream.read(_STEP)):
             total += len(part)
     return total

@@ -8,6 +8,7 @@ the others of the file do.
 
 from __future__ import annotations
 
+import gzip
 import re
 from collections.abc import Iterable
 from datetime import date
@@ -16,11 +17,10 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
-import pyarrow as pa
 
 from zwidth.data.logs.records import Records, names_of_records, records_in_json, sign_of_monitor
 from zwidth.errors import InputError
-from zwidth.reading import LARGEST_CHUNK, Bounded
+from zwidth.reading import LARGEST_CHUNK, Bounded, unpacking
 
 _NOTHING = """
 nan -nan null none na n/a #n/a n.a. n.a k.a. k.a #nv - -- --- — – . ? ?? * ** *** **** ***** ol
@@ -212,8 +212,11 @@ def plain_signs(text: str) -> str:
 
 
 def _opened(path: Path) -> IO[bytes] | Bounded:
-    if path.suffix.lower() in (".gz", ".bz2", ".zst"):
-        return Bounded(path, pa.input_stream(str(path), compression="detect"))
+    suffix = path.suffix.lower()
+    if suffix == ".gz":
+        return Bounded(path, gzip.open(path))
+    if codec := {".bz2": "bz2", ".zst": "zstd"}.get(suffix):
+        return Bounded(path, unpacking(path, codec))
     return open(path, "rb")
 
 

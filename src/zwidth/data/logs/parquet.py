@@ -39,9 +39,8 @@ _Part = tuple[str, int | None, pa.DataType]
 """The field that a column is in, its place in the field's list, and the type that it is read as."""
 
 
-def parquet_table(path: Path, episode: str | None = None) -> Table:
-    """Of a file, or of a folder with a LeRobot dataset; of that the episode of this number, or all."""
-    files = dataset_files(path) if path.is_dir() else [path]
+def parquet_table(path: Path, files: list[Path], episode: str | None = None) -> Table:
+    """Of a file, or of those of a LeRobot dataset; of that the episode of this number, or all."""
     with readable(str(files[0])):
         schema = pq.read_schema(files[0])
     again = next((name for name in schema.names if schema.names.count(name) > 1), None)
@@ -185,20 +184,6 @@ def _values(column: pa.Array, kind: pa.DataType) -> Values:
 # LeRobot: meta/info.json beside data/chunk-000/….parquet, one episode in each up to v2.1, many from v3.0 on.
 # Which unit its numbers have depends on the robot and on the version that recorded it (huggingface/lerobot:
 # datasets/utils.py; `use_degrees` of robots/*/config_*.py, v0.3.2 to v0.6.1, docs/source/backwardcomp.mdx).
-
-
-def dataset_files(path: Path) -> list[Path]:
-    """The files of the one dataset that a folder is, is in, or holds."""
-    infos = (info for depth in ("", "*/", "*/*/", "*/*/*/") for info in path.glob(f"{depth}meta/info.json"))
-    found = sorted(str(info.parent.parent) for info in infos)
-    if len(found) > 1 and str(path) not in found:
-        raise InputError(f"{path} holds {len(found)} LeRobot datasets, {listed(found)}: name one of them")
-    root = Path(found[0]) / "data" if found else path
-    files = sorted([*root.glob("*.parquet"), *root.glob("*/*.parquet")])
-    if not files:
-        what = f"nothing is in {root}" if found else "no rosbag2: there is no metadata.yaml in it"
-        raise InputError(f"{path} is a directory, and {what}; name a file")
-    return files
 
 
 def _dataset(path: Path) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from zwidth.data.logs.log import Log, contents, stated_period
 from zwidth.data.logs.meaning import meaning_of
 from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets, with_whole_stamps
 from zwidth.errors import InputError
+from zwidth.libraries import parquet
 from zwidth.missing import did_you_mean
 
 
@@ -115,11 +116,10 @@ def log_of(
 
 def table_of_file(path: Path, sheet: str | None = None) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load."""
-    first = path
+    files = [path]
     if path.is_dir() and not (path / "metadata.yaml").is_file():
-        from zwidth.data.logs.parquet import dataset_files
-
-        first = dataset_files(path)[0]
+        files = _of_dataset(path)
+    first = files[0]
     if not path.exists():
         raise InputError(f"{path} cannot be read: there is no such file{did_you_mean(path)}")
     start = b""
@@ -133,9 +133,10 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
     if start[:8] == b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1":
         raise InputError(f"{path} is {_old_office(path)}")
     if start[:4] == b"PAR1" or first != path:
+        parquet(f"{path} is not read")
         from zwidth.data.logs.parquet import parquet_table
 
-        return parquet_table(path, sheet)
+        return parquet_table(path, files, sheet)
     if sheet is not None:
         raise InputError(f'{path} is no workbook and has no sheets: leave sheet="{sheet}" out')
     is_hdf5 = b"\x89HDF\r\n\x1a\n" in (start[:8], start[512:520])
@@ -164,6 +165,20 @@ def table_of_file(path: Path, sheet: str | None = None) -> Table:
     from zwidth.data.logs.text import text_table
 
     return text_table(path)
+
+
+def _of_dataset(path: Path) -> list[Path]:
+    """The files of the one dataset that a folder is, is in, or holds."""
+    infos = (info for depth in ("", "*/", "*/*/", "*/*/*/") for info in path.glob(f"{depth}meta/info.json"))
+    found = sorted(str(info.parent.parent) for info in infos)
+    if len(found) > 1 and str(path) not in found:
+        raise InputError(f"{path} holds {len(found)} LeRobot datasets, {listed(found)}: name one of them")
+    root = Path(found[0]) / "data" if found else path
+    files = sorted([*root.glob("*.parquet"), *root.glob("*/*.parquet")])
+    if not files:
+        what = f"nothing is in {root}" if found else "no rosbag2: there is no metadata.yaml in it"
+        raise InputError(f"{path} is a directory, and {what}; name a file")
+    return files
 
 
 def _in_archive(path: Path, sheet: str | None) -> Table:

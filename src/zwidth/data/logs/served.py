@@ -16,13 +16,12 @@ from typing import IO, Any, NamedTuple
 from zlib import crc32
 
 import numpy as np
-import pyarrow as pa
 
-from zwidth import installing
 from zwidth.data.logs.contents import COLUMNS, Head, Part, from_json, head_in, rows_lost
 from zwidth.data.logs.table import PIECE, Finding, Table, Values
 from zwidth.errors import InputError
-from zwidth.reading import LARGEST_CHUNK, check_chunk, check_expansion
+from zwidth.libraries import library
+from zwidth.reading import LARGEST_CHUNK, check_chunk, check_expansion, unpacking
 
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
@@ -103,12 +102,6 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
         yield Part(np.empty((0, len(head.columns))), [], last=True)
 
 
-def not_installed(path: Path) -> InputError:
-    """Of a file that takes the library of the extra `logs`."""
-    said = f"{path} cannot be read: a library for ROS bags and MCAP is not installed; type"
-    return InputError(said, installing.line("logs"))
-
-
 def records(file: IO[bytes], path: Path) -> Iterator[_Record]:
     """Whole records, one after the other."""
     if file.read(len(MAGIC)) != MAGIC:
@@ -165,19 +158,20 @@ def unpacked(content: bytes, path: Path) -> bytes | None:
     stored = content[place + 8 : place + 8 + packed]
     if codec not in ("", "zstd", "lz4"):
         raise InputError(f"{path} is not read: it is compressed by {codec!r}; zstd, lz4 and none are read")
-    data = _expanded(stored, codec, size)
+    data = _expanded(path, stored, codec, size)
     if data is None or len(data) != size or (checksum and crc32(data) != checksum):
         return None
     return data
 
 
-def _expanded(stored: bytes, codec: str, size: int) -> bytes | None:
+def _expanded(path: Path, stored: bytes, codec: str, size: int) -> bytes | None:
     if codec == "":
         return stored
+    stream = unpacking(path, codec, stored)
     try:
-        with pa.CompressedInputStream(pa.BufferReader(stored), codec) as stream:
+        with stream:
             return bytes(stream.read(size + 1))
-    except (OSError, pa.ArrowException):
+    except (OSError, ValueError):
         return None
 
 
@@ -398,10 +392,7 @@ class Mcap:
     def _of_ros(self, encoding: str, name: str, form: str, text: bytes) -> Callable[[bytes], Any] | None:
         if encoding not in ("cdr", "ros1"):
             return None
-        try:
-            from rosbags import typesys
-        except ImportError:
-            raise not_installed(self.path) from None
+        typesys = library("rosbags.typesys", f"{self.path} is not read: a message of ROS")
         store = typesys.get_typestore(typesys.Stores.EMPTY if text else typesys.Stores.LATEST)
         try:
             if form.endswith("idl"):
@@ -420,7 +411,7 @@ class Mcap:
         """A message that is compressed by itself, expanded: none begins so otherwise."""
         if not data.startswith(ZSTD):
             return data
-        with pa.CompressedInputStream(pa.BufferReader(data), "zstd") as stream:
+        with unpacking(self.path, "zstd", data) as stream:
             whole = bytes(stream.read(LARGEST_CHUNK + 1))
         check_chunk(self.path, len(whole))
         return whole

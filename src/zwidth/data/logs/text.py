@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.csv as pc
 
 from zwidth.data.logs.cells import (
     SNIFFED,
@@ -34,7 +34,12 @@ from zwidth.data.logs.table import Finding, Table, Values, listed
 from zwidth.errors import InputError
 
 _PIECE = 2**23
-_NULLS = ["", "NaN", "nan", "NAN", "-nan", "null", "NULL", "None", "none", "NA", "N/A", "#N/A", "-"]
+_NULLS = rb" *(?:null|NULL|None|none|NA|N/A|#N/A|-)? *"
+"""What stands where a number is missing, for the quick reader."""
+
+_INSTANT = rb"(?:19|20)\d\d-\d\d-\d\d(?:[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?)?"
+_TYPES = {"float": np.float64, "int": np.int64, "date": np.dtype("M8[ns]"), "words": np.object_}
+_SWAPPED = bytes.maketrans(b".,", b",.")
 _UNITS = {"date": "ns", "calendar": "ns", "clock": "s"}
 """Of what is read from times that are written out."""
 
@@ -165,12 +170,11 @@ class Parser:
         self.unfinished = False
         letters = re.sub(r"[^a-zA-Z]|[eEdDnNaAiIfF]", "", layout.header)
         self._letter = letters[:1].encode()  # in the header, and in no number
-        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns"), "words": pa.string()}
         for name in names:
             if layout.kind(name) == "text":
                 raise InputError(f'{source}: column "{name}" holds text, such as "{self._example(name)}"')
-        self.types = {name: kinds[kind] for name in names if (kind := layout.kind(name)) in kinds}
-        self._by_cells = len(self.types) < len(set(names))
+        self._mending = 0  # 1: rows of another length and empty cells; 2: words for no number, too
+        self._by_cells = not _TYPES.keys() >= set(map(layout.kind, names))
         self._decimal = {name: decimal_of(layout.fields(name)) or layout.decimal for name in names}
         self._last = dict.fromkeys(names, float("nan"))
         self.notes: list[str] = []
@@ -178,10 +182,10 @@ class Parser:
     def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
         cleaned = self._cleaned(lines)
         if cleaned.strip():
-            parts = self._quickly(cleaned)
-            if parts is None:
+            part = self._quickly(cleaned)
+            if part is None:
                 self._by_cells = True
-                parts = [self._cell_by_cell(cleaned.decode())]
+                part = self._cell_by_cell(cleaned.decode())
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
                     f"{self.source}: {self.broken} of {self.rows + self.broken} rows have another number of "
@@ -189,22 +193,26 @@ class Parser:
                 )
             start, step = self.layout.counted or (0.0, 1.0)
             count = self.layout.names[0] if self.layout.counted else None
-            for part in parts:
-                named = zip(self.names, part, strict=True)
-                yield tuple(start + step * v if name == count else v for name, v in named)
+            named = zip(self.names, part, strict=True)
+            yield tuple(start + step * v if name == count else v for name, v in named)
 
-    def _quickly(self, lines: bytes) -> list[tuple[Values, ...]] | None:
+    def _quickly(self, lines: bytes) -> tuple[Values, ...] | None:
         """None where a cell is not written as the quick reader has it."""
         if self._by_cells:
             return None
         broken = self.broken
-        try:
-            table = self._parsed(lines)
-        except pa.ArrowInvalid:
-            self.broken = broken
-            return None
-        self.rows += table.num_rows
-        return [tuple(_numbers(part.column(name)) for name in self.names) for part in table.to_batches()]
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # numpy warns of a number that it guessed
+            for mending in range(self._mending, 3):  # what was enough for the lines before, or more
+                self._mending, self.broken = mending, broken
+                try:
+                    columns = self._parsed(self._even(lines) if self._mending else lines)
+                except (ValueError, Warning):
+                    continue
+                self.rows += columns[self.names[0]].size
+                return tuple(columns[name] for name in self.names)
+        self.broken = broken
+        return None
 
     def report(self, notes: dict[str, Finding]) -> None:
         if self.unfinished:
@@ -224,24 +232,72 @@ class Parser:
             )
             notes["headers"] = Finding(kind="headers", text=text)
 
-    def _parsed(self, lines: bytes) -> pa.Table:
-        layout = self.layout
-        return pc.read_csv(
-            pa.BufferReader(lines),
-            read_options=pc.ReadOptions(column_names=list(layout.names), block_size=_PIECE // 2),
-            parse_options=pc.ParseOptions(delimiter=layout.delimiter, invalid_row_handler=self._skip),
-            convert_options=pc.ConvertOptions(
-                include_columns=list(dict.fromkeys(self.names)),
-                column_types=self.types,
-                decimal_point=layout.decimal,
-                null_values=_NULLS,
-                strings_can_be_null=True,
-            ),
-        )
+    def _even(self, lines: bytes) -> bytes:
+        """The rows with as many fields as there are names; the others are counted, empty ones are not."""
+        delimiter, signs = self.layout.delimiter.encode(), len(self.layout.names) - 1
+        data = np.frombuffer(lines, np.uint8)
+        ends, found = np.flatnonzero(data == ord("\n")), np.flatnonzero(data == ord(delimiter))
+        if b'"' in lines and (np.searchsorted(np.flatnonzero(data == ord('"')), found) % 2).any():
+            raise ValueError("a delimiter stands in quotes")
+        kept, since = [], 0
+        for k in np.flatnonzero(np.diff(np.searchsorted(found, ends), prepend=0) != signs):
+            begin, end = int(ends[k - 1]) + 1 if k else 0, int(ends[k]) + 1
+            self.broken += bool(lines[begin:end].strip(b" \r\n"))
+            kept.append(lines[since:begin])
+            since = end
+        return b"".join([*kept, lines[since:]])
 
-    def _skip(self, row: Any) -> str:
-        self.broken += 1
-        return "skip"
+    def _parsed(self, lines: bytes) -> dict[str, Values]:
+        """The columns; an error where a row has another number of fields, or a cell is not plain."""
+        layout = self.layout
+        if layout.delimiter == layout.decimal or lines.count(b"\r") > lines.count(b"\r\n"):
+            raise ValueError("it is not clear what a field or a row is")
+        if b'"' in lines and any(line.count(b'"') % 2 for line in lines.split(b"\n")):
+            raise ValueError("quotes go on in the next line")
+        columns: dict[str, Values] = {}
+        for kind in dict.fromkeys(map(layout.kind, self.names)):
+            names = [name for name in dict.fromkeys(self.names) if layout.kind(name) == kind]
+            columns |= self._loaded(self._numbers(lines) if kind == "float" else lines, names, kind)
+        if len({values.size for values in columns.values()}) > 1:
+            raise ValueError("it is not clear what a row is")
+        return columns
+
+    def _numbers(self, lines: bytes) -> bytes:
+        """The same with the decimal point, and NaN where a number is missing."""
+        if self.layout.decimal == ",":
+            lines = lines.translate(_SWAPPED)  # a point groups there, and becomes what is refused
+        if not self._mending or len(self.layout.names) == 1:
+            return lines
+        sign, lines = self.layout.delimiter.encode(), b"\n" + lines
+        if self._mending == 2:
+            pattern = rb"([\n%b])" + _NULLS + rb"(?=[%b\r\n])"
+            lines = re.sub(pattern % (re.escape(sign), re.escape(sign)), rb"\1", lines)
+        for one, other in ((sign, sign), (sign, sign), (sign, b"\r\n"), (sign, b"\n"), (b"\n", sign)):
+            lines = lines.replace(one + other, one + b"nan" + other)
+        return lines
+
+    def _loaded(self, lines: bytes, names: list[str], kind: str) -> dict[str, Values]:
+        """Columns of one kind."""
+        layout = self.layout
+        table: Values = np.loadtxt(
+            TextIOWrapper(BytesIO(lines), encoding="utf-8"),
+            # with a type for every column, numpy refuses a row that has more or fewer
+            dtype=[(f"{k}", _TYPES[kind] if n in names else "U1") for k, n in enumerate(layout.names)],
+            delimiter=layout.delimiter,
+            quotechar='"' if b'"' in lines else None,
+            comments=None,
+            ndmin=1,
+        )
+        found = {name: np.ascontiguousarray(table[f"{layout.names.index(name)}"]) for name in names}
+        sign = re.escape(layout.delimiter.encode())
+        for name in names if kind == "date" else ():  # numpy takes more for one: "now", zones, years alone
+            before = rb"(?m)^(?:[^\n" + sign + rb"]*" + sign + rb"){%d} *(?:" % layout.names.index(name)
+            dates = re.findall(before + _INSTANT + rb")? *(?:" + sign + rb"|\r?\n)", lines)
+            if len(dates) != table.size:
+                raise ValueError("a date is not written plainly")
+        if kind == "words":
+            return {name: np.frompyfunc(str.strip, 1, 1)(values) for name, values in found.items()}
+        return found
 
     def _cleaned(self, lines: bytes) -> bytes:
         """Without comments, repeated headers and, where white space separates, more than one of it."""
@@ -342,13 +398,3 @@ class Parser:
             values = past_midnight(values, self._last[name])
             self._last[name] = float(values[-1])
         return values
-
-
-def _numbers(column: pa.Array) -> Values:
-    words = pa.types.is_string(column.type)
-    if not column.null_count and not pa.types.is_timestamp(column.type) and not words:
-        return np.from_dlpack(column)  # `to_numpy` loads pandas, if it is there
-    values: Values = column.to_numpy(zero_copy_only=False)
-    if values.dtype == np.object_ and not words:
-        return values.astype(np.float64)
-    return values

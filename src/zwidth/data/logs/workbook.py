@@ -20,6 +20,7 @@ from zwidth.data.logs.cells import decimal_of, is_nothing, is_number, number, pl
 from zwidth.data.logs.sheets import Sheets, table_of_sheets
 from zwidth.data.logs.table import Table
 from zwidth.errors import InputError
+from zwidth.libraries import library
 from zwidth.reading import check_chunk, check_expansion
 
 MOST_ROWS = 2**20
@@ -52,12 +53,11 @@ def workbook_table(path: Path, sheet: str | None) -> Table:
 @contextmanager
 def _opened(path: Path, results: bool) -> Iterator[Any]:
     """The workbook with the results of its formulas, or with the formulas themselves."""
-    from openpyxl import load_workbook  # takes its time
-
+    openpyxl = library("openpyxl", f"{path} is not read: a workbook")
     with warnings.catch_warnings(), open(path, "rb") as file:
         warnings.simplefilter("ignore")  # of styles and of features that are not looked at
         try:
-            book = load_workbook(file, read_only=True, data_only=results, keep_links=False)
+            book = openpyxl.load_workbook(file, read_only=True, data_only=results, keep_links=False)
             if not book.worksheets:
                 raise InputError(
                     f"{path} has no sheet that can be read; if it is a strict Open XML workbook, save it as "

@@ -20,6 +20,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.libraries import parquet
 from zwidth.loop.pair.simulate import ARMS, labelled
 from zwidth.loop.pair.simulate import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import (
@@ -215,10 +216,8 @@ def _write_parquet(trace: xr.Dataset, file: IO[bytes]) -> None:
 
 
 def _read_parquet(path: Path) -> xr.Dataset:
-    import pyarrow.parquet as pq
-
     check_parquet(path)
-    table = pq.read_table(path)
+    table = parquet(f"{path} is not read").read_table(path)
     attributes = json.loads((table.schema.metadata or {}).get(b"zwidth", b"{}"))
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, attributes, path)
 

@@ -20,6 +20,7 @@ import xarray as xr
 
 from zwidth import installing
 from zwidth.errors import InputError
+from zwidth.libraries import parquet
 from zwidth.missing import did_you_mean
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -116,10 +117,8 @@ def _column(name: str, values: xr.DataArray) -> str:
 
 
 def _read_parquet(path: Path) -> tuple[xr.Dataset, str]:
-    import pyarrow.parquet as pq
-
     check_parquet(path)
-    table = pq.read_table(path)
+    table = parquet(f"{path} is not read").read_table(path)
     told = json.loads((table.schema.metadata or {}).get(b"zwidth", b"{}"))
     _refuse_foreign(path, told.get("attributes", {}).get("format"))
     axes = {name: np.array([float(value) for value in values]) for name, values in told["axes"].items()}

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from zwidth.errors import InputError
+from zwidth.libraries import parquet
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
@@ -149,6 +150,8 @@ def _place(path: Path) -> Path:
         raise InputError(f"a sweep is kept in a file that ends in {' or '.join(SUFFIXES)}, got {str(path)!r}")
     if not path.parent.is_dir():
         raise InputError(f"{path} cannot be written: there is no directory {path.parent}")
+    if path.suffix == PARQUET:
+        parquet(f"{path} is not written")
     return path
 
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from struct import pack
@@ -19,7 +20,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 from zlib import crc32
 
 import numpy as np
-import pyarrow as pa
 
 from zwidth import __version__
 from zwidth.data.logs import served as layout
@@ -205,8 +205,6 @@ class LoopRows(Rows, Protocol):
 _OF_ROWS, _OF_EVENTS = 1, 2
 """Numbers of the schemas and channels."""
 
-_CODEC = "zstd"
-
 _NEW = os.O_WRONLY | os.O_CREAT | getattr(os, "O_BINARY", 0)
 
 _NUMBERED = np.dtype([("kind", "u1"), ("size", "<u8"), ("channel", "<u2"), ("number", "<u4")])
@@ -230,6 +228,15 @@ def _table(values: dict[str, str]) -> bytes:
     return pack("<I", len(inside)) + inside
 
 
+def _packer() -> tuple[str, Callable[[bytes], bytes]]:
+    """What compresses a chunk, where it is installed: the standard library has nothing that MCAP knows."""
+    try:
+        from pyarrow import compress
+    except ImportError:
+        return "", bytes
+    return "zstd", partial(compress, codec="zstd", asbytes=True)
+
+
 class McapFile:
     """A file that grows by chunks, made new; with `force` what is there is lost.
 
@@ -239,6 +246,7 @@ class McapFile:
     def __init__(self, path: Path, head: Head, force: bool = False) -> None:
         self._file = os.open(path, _NEW | (os.O_TRUNC if force else os.O_EXCL), 0o666)
         self._head, self._at = head, 0
+        self._codec, self._packed = _packer()
         self._rows = self._events = self._chunks = 0
         self._index = bytearray()
         self._first = self._last = 0
@@ -268,15 +276,16 @@ class McapFile:
         data = messages.tobytes() + b"".join(told)
         times = [*map(int, taken[:1]), *map(int, taken[-1:]), *([now] * bool(events))]
         start, end = min(times), max(times)
-        packed = pa.compress(data, _CODEC, asbytes=True)
-        about = layout.CHUNK_HEAD.pack(start, end, len(data), crc32(data)) + text(_CODEC)
+        packed = self._packed(data)
+        about = layout.CHUNK_HEAD.pack(start, end, len(data), crc32(data)) + text(self._codec)
         chunk = record(layout.CHUNK, about + pack("<Q", len(packed)) + packed)
         places = np.arange(len(rows), dtype=np.uint64) * np.uint64(messages.dtype.itemsize)
         indices = {_OF_ROWS: _index(_OF_ROWS, taken, places)} if len(rows) else {}
         if events:
             ends = np.cumsum([messages.nbytes, *map(len, told)])[:-1]
             indices[_OF_EVENTS] = _index(_OF_EVENTS, np.full(len(events), now), ends)
-        self._index += _chunk_index(start, end, self._at, len(chunk), indices, len(packed), len(data))
+        about = text(self._codec) + pack("<QQ", len(packed), len(data))
+        self._index += _chunk_index(start, end, self._at, len(chunk), indices, about)
         self._give(chunk + b"".join(indices.values()))
         self._first = self._first if self._chunks else start
         self._last = max(self._last, end)
@@ -386,12 +395,10 @@ def _index(channel: int, times: NDArray[Any], places: NDArray[Any]) -> bytes:
     return record(layout.MESSAGE_INDEX, pack("<HI", channel, pairs.nbytes) + pairs.tobytes())
 
 
-def _chunk_index(
-    start: int, end: int, at: int, size: int, indices: dict[int, bytes], packed: int, expanded: int
-) -> bytes:
+def _chunk_index(start: int, end: int, at: int, size: int, indices: dict[int, bytes], packed: bytes) -> bytes:
     places, place = b"", at + size
     for channel, index in indices.items():
         places += pack("<HQ", channel, place)
         place += len(index)
     about = pack("<QQQQI", start, end, at, size, len(places)) + places + pack("<Q", place - at - size)
-    return record(layout.CHUNK_INDEX, about + text(_CODEC) + pack("<QQ", packed, expanded))
+    return record(layout.CHUNK_INDEX, about + packed)
