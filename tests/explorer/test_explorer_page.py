@@ -87,11 +87,24 @@ def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, addres
     typed.fill("0.3 N/mm")
     typed.press("Enter")
     expect(verdict(page)).to_contain_text("exactly at its limit")
-    typed.fill("300 bananas")
-    typed.press("Enter")
-    expect(page.get_by_role("alert").first).to_contain_text("bananas")
-    expect(verdict(page)).to_contain_text("exactly at its limit")
+    badge = verdict(page).locator(".badge")
+    grey = "one => getComputedStyle(one.getRootNode().host).filter.includes('grayscale(1)')"
+    refusal = page.locator("#loop [data-path='environment.stiffness']").get_by_role("alert")
+    for wrong in ("300 bananas", "-300"):
+        typed.fill(wrong)
+        typed.press("Enter")
+        expect(refusal).to_contain_text(wrong.removeprefix("300 "))
+        expect(typed).to_have_accessible_description(str(refusal.text_content()))
+        expect(verdict(page)).to_contain_text("stiffness cannot be used as typed")
+        assert badge.evaluate(grey)
     assert held(page)["environment.stiffness"] == "300 N/m"
+    page.get_by_role("button", name="The verdict as JSON").click()
+    expect(page.get_by_role("alert").first).to_contain_text("nothing is saved")
+    typed.fill("300 N/m")
+    typed.press("Enter")
+    expect(refusal).to_have_count(0)
+    expect(verdict(page)).not_to_contain_text("cannot be used")
+    assert not badge.evaluate(grey)
     before = page.url
     typed.fill("300 pear")
     slider(page, "stiffness").evaluate("one => (one.value = 900)")
@@ -102,7 +115,7 @@ def test_a_typed_number_is_exact_and_a_wrong_one_is_a_message(page: Page, addres
     typed.press("End")
     typed.press_sequentially("s")
     typed.press("Enter")
-    expect(page.get_by_role("alert").first).to_contain_text("pears")
+    expect(refusal).to_contain_text("pears")
 
 
 @one_size

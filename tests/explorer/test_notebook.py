@@ -35,8 +35,12 @@ def test_it_shows_the_loop_that_it_was_given() -> None:
     assert shown.verdict.outcome == "passive"
     assert form.told["error"] == ""
     form.event = {"kind": "typed", "path": "environment.stiffness", "value": "soft", "number": 2}
-    assert "soft" in form.told["error"]
+    assert '"soft"' in form.told["refused"]["environment.stiffness"]
     assert shown.environment == zw.Wall(stiffness=100)
+    assert "cannot be used as typed" in shown._session.head.html
+    form.event = {"kind": "choose", "path": "environment", "value": "maxwell", "number": 3}
+    assert not form.told["refused"]
+    assert "cannot be used" not in shown._session.head.html
 
 
 @cache

@@ -118,6 +118,30 @@ def test_a_person_without_a_pointer_plays(page: Page, address: str) -> None:
 
 
 @one_size
+@pytest.mark.parametrize(("inertia", "thing"), [(0.02, "wheel"), (2e-5, "knob")])
+def test_what_turns_is_turned_round(page: Page, tmp_path: Path, inertia: float, thing: str) -> None:
+    """By the angle that the pointer goes round its middle, also beyond half a turn; in degrees and N·m."""
+    device = zw.rotary(inertia=inertia, damping=0.02, coulomb_friction=0.01, resolution=1e-3, rate=1000)
+    place = tmp_path / "play.html"
+    place.write_text(play_page([play(device, zw.Wall(0.5), reach=6.0)]), encoding="utf-8")
+    page.goto(place.as_uri())
+    box: Any = page.get_by_role("slider", name=f"The hand on the {thing}").bounding_box()
+    for degrees in range(60, 335, 5):
+        angle = np.radians(degrees)
+        across, down = box["width"] / 2 + 60 * np.sin(angle), box["height"] / 2 + 8 - 60 * np.cos(angle)
+        page.mouse.move(box["x"] + across, box["y"] + down)
+        if degrees == 60:
+            page.mouse.down()
+    _frames(page, 40)
+    pointer = _recording(page)[1][:, 1]
+    assert pointer[-1] - pointer[0] == pytest.approx(np.radians(270), abs=0.05)
+    told = f"/^{thing} at [^m]*°, torque [^m]* N·m, held$/"
+    page.wait_for_function(f"{told}.test(document.querySelector('#stage').ariaValueText)")
+    assert f"Take the {thing}" in page.locator("#do").inner_text()
+    assert "inertia" in page.locator("#numbers").inner_text()
+
+
+@one_size
 def test_letting_go_frees_the_handle(page: Page, address: str) -> None:
     page.goto(address)
     _stroke(page, [0.5, 0.6, 0.7, 0.75, 0.75], release=True)

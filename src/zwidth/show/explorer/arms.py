@@ -46,7 +46,7 @@ class Arms:
         made = coupling_controls(verdict)
         if {one.path for one in made} != set(self._controls):
             self._controls = {one.path: one for one in made}
-            self.form.groups = [group("Spring and link between two of this device", map(shown, made))]
+            self.form.draw([group("Spring and link between two of this device", map(shown, made))])
         self._card.html = str(pair_card(verdict, None))
 
     def hear(self, event: Event) -> Mapping[str, Any]:

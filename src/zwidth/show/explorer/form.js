@@ -18,13 +18,14 @@ export function render({ model, el }) {
   let dragged = null;
   let typing = null; // where somebody types nothing is written over until it is told
 
+  const row = (path) => body.querySelector(`[data-path="${CSS.escape(path)}"]`);
   const send = () => {
     if (busy || waiting.size === 0) return;
     const [key, event] = waiting.entries().next().value;
     waiting.delete(key);
     busy = true;
     number += 1;
-    model.event = { ...event, number };
+    model.event = { ...event, number, before: row(event.path)?.dataset.text ?? "" };
   };
   const tell = (kind, path, value) => {
     const key = `${kind} ${path}`;
@@ -54,7 +55,8 @@ export function render({ model, el }) {
     const done = () => {
       if (typing !== one.path) return;
       typing = null;
-      if (input.value !== (input.closest(".row")?.dataset.text ?? one.text)) tell("typed", one.path, input.value);
+      const own = row(one.path);
+      if (input.ariaInvalid || input.value !== (own?.dataset.text ?? one.text)) tell("typed", one.path, input.value);
     }; // six digits are shown of what may have more: untouched it stays as it is
     input.addEventListener("input", () => (typing = one.path));
     input.addEventListener("change", done);
@@ -98,6 +100,19 @@ export function render({ model, el }) {
     input.addEventListener("click", () => (input.value = "")); // so that the same file can be given again
     chosenFile = input;
     return input;
+  };
+
+  const refuse = (own, message) => {
+    if (message === own.querySelector(".problem")?.textContent) return;
+    own.querySelector(".problem")?.remove();
+    for (const input of own.querySelectorAll("input, select")) {
+      input.ariaInvalid = message ? "true" : null;
+      message ? input.setAttribute("aria-describedby", `why-${own.dataset.path}`) : input.removeAttribute("aria-describedby");
+    }
+    const typed = own.querySelector("[type=text]");
+    if (!message && typed && typing !== own.dataset.path) typed.value = own.dataset.text;
+    if (!message) return;
+    own.append(make("p", { className: "problem", id: `why-${own.dataset.path}`, role: "alert", textContent: message }));
   };
 
   const shown = (one) => {
@@ -144,8 +159,7 @@ export function render({ model, el }) {
       }),
     );
     if (focused !== undefined) {
-      const row = body.querySelector(`[data-path="${CSS.escape(focused)}"]`);
-      const next = row?.querySelector(`[type="${kind}"]`) || row?.querySelector("select, input, button");
+      const next = row(focused)?.querySelector(`[type="${kind}"]`) || row(focused)?.querySelector("select, input, button");
       if (next && unfinished !== undefined) next.value = unfinished;
       next?.focus();
     }
@@ -155,16 +169,17 @@ export function render({ model, el }) {
     const told = model.told;
     if (told.error !== undefined) alert.textContent = told.error;
     for (const [path, [text, place]] of Object.entries(told.values || {})) {
-      const row = body.querySelector(`[data-path="${CSS.escape(path)}"]`);
-      if (!row) continue;
-      const [typed, range] = [row.querySelector("[type=text]"), row.querySelector("[type=range]")];
+      const own = row(path);
+      if (!own) continue;
+      const [typed, range] = [own.querySelector("[type=text]"), own.querySelector("[type=range]")];
       if (typed && typing !== path) typed.value = text;
-      row.dataset.text = text;
-      if (row.matches(".number")) row.querySelector("small")?.remove();
+      own.dataset.text = text;
+      if (own.matches(".number")) own.querySelector("small")?.remove();
       if (range && dragged !== path && !waiting.has(`move ${path}`)) range.value = Math.round(STEPS * place);
       if (range) range.setAttribute("aria-valuetext", text || "not given");
-      row.classList.toggle("unknown", Boolean(range) && !text);
+      own.classList.toggle("unknown", Boolean(range) && !text);
     }
+    if (told.refused) for (const own of body.querySelectorAll(".row")) refuse(own, told.refused[own.dataset.path]);
     if (told.query) window.history.replaceState(null, "", `?${told.query}${window.location.hash}`);
     if (told.file) save(told.file);
     if (told.heard >= number && busy) {
@@ -181,10 +196,6 @@ export function render({ model, el }) {
   heed();
   if (model.views) setTimeout(() => window.dispatchEvent(new Event("zwidth-drawn")));
   return form;
-}
-
-function row_of(input) {
-  return input.closest(".row");
 }
 
 function el_active(form) {

@@ -61,21 +61,60 @@ class Form(Told):
     _priority_changes = _busy__ignore = ["event"]  # noqa: RUF012  # else each waits 50 ms for others
     _stylesheets = [_read("form.css")]  # noqa: RUF012  # as Panel has it
 
-    def listen(self, hear: Callable[[Event], Mapping[str, Any]], soon: Soon) -> None:
-        """Have each event answered, in its turn: `hear` returns what is told to the page."""
+    def __init__(self, **given: Any) -> None:
+        self.refused: dict[str, str] = {}
+        """By the path of a control: why what it says cannot be used."""
+        self._marked: Callable[[], None] = lambda: None
+        super().__init__(**given)
+
+    def draw(self, groups: list[dict[str, Any]]) -> None:
+        """Show these controls, none of them refused."""
+        self.groups, was, self.refused = groups, self.refused, {}
+        if was:
+            self._marked()
+
+    def listen(
+        self, hear: Callable[[Event], Mapping[str, Any]], soon: Soon, marked: Callable[[], None]
+    ) -> None:
+        """Have each event answered, in its turn: `hear` returns what is told to the page.
+
+        `marked`: is called when something else is refused than before.
+        """
+        self._marked = marked
 
         def heed(event: Event) -> None:
+            path, before = str(event.get("path")), {**self.refused}
             try:
                 answer = hear(event)
+                if event.get("kind") in _SETS:
+                    self.refused.pop(path, None)
             except InputError as error:
-                answer = {"error": str(error)}
-            self.told = {"heard": event["number"], **answer}
+                here = event.get("kind") in _SETS and path in self._paths()
+                answer = {"error": "" if here else str(error)}
+                if here:
+                    self.refused[path] = _refusal(str(error), path, event.get("before"))
+            self.told = {"heard": event["number"], "refused": {**self.refused}, **answer}
+            if self.refused != before:
+                marked()
 
         def on_event(change: Any) -> None:
             if isinstance(change.new.get("number"), int):
                 soon(partial(heed, change.new))
 
         self.param.watch(on_event, "event")
+
+    def _paths(self) -> set[str]:
+        return {one["path"] for group in self.groups for one in group["controls"]}
+
+
+_SETS = ("move", "typed", "choose")
+"""Events that set what their control says."""
+
+
+def _refusal(error: str, path: str, before: Any) -> str:
+    """A sentence for beside the control, which ends in what may be typed: what was there before."""
+    said = error.removeprefix(f"{path.partition('.')[0]}: ")
+    return said if not before or "such as" in said else f"{said}; type a value such as {str(before)[:60]}"
 
 
 class Words(Told):

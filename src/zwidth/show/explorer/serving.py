@@ -140,7 +140,7 @@ class _Server:
         try:
             return from_query(pairs), ""
         except InputError as error:
-            return self._state, f"What the address asks for cannot be used: {error}"
+            return self._state, f"What the address asks for cannot be used: {error}. Another loop is shown."
 
     def _left(self, session: Session) -> None:
         self._open -= 1

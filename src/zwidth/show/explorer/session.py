@@ -34,6 +34,9 @@ from zwidth.showing import element
 
 _askers = count(1)
 
+_NOW, _OLD = {"filter": "none"}, {"filter": "grayscale(1) opacity(0.75)"}
+"""Of what is shown of this loop, and of the one before."""
+
 _MORE = "The closed forms leave a gap: more is being worked out …"
 
 
@@ -88,7 +91,19 @@ class Session:
             with answers_in(*self.state.angles):
                 return hear(event)
 
-        form.listen(heard, self._soon)
+        form.listen(heard, self._soon, self._mark)
+
+    def _mark(self) -> None:
+        """Grey out what is shown of the loop before, while something that was typed is refused."""
+        refused = bool(self.form.refused)
+        for view in self.views:
+            forms = [part for part in view.parts if isinstance(part, Form)]
+            here = refused or any(form.refused for form in forms)
+            for part in view.parts:
+                part.styles = _OLD if here and part not in forms else _NOW
+        for part in (self.head, self.details, self.badge):
+            part.styles = _OLD if refused else _NOW
+        self._say(self._note)
 
     def keep(self, state: State) -> Mapping[str, Any]:
         """Take another state whose loop is the same; what is told to the page."""
@@ -168,7 +183,7 @@ class Session:
     def _draw_form(self, loop: Specification) -> None:
         made = [*controls_of(self.state, loop)]
         self._controls = {one.path: one for one in made}
-        self.form.groups = groups_of(self.state, loop.device.name, made)
+        self.form.draw(groups_of(self.state, loop.device.name, made))
 
     def see(self, key: str) -> None:
         """Another picture is open."""
@@ -200,7 +215,14 @@ class Session:
 
     def _say(self, note: str) -> None:
         self._note = note
-        self.head.html = str(head(self.verdict, note, self.state.begun))
+        refused = self._refused()
+        old = [f"{refused} cannot be used as typed: the verdict below is that before"] if refused else []
+        self.head.html = str(head(self.verdict, note, [*old, *not_measured(self.state.begun)]))
+
+    def _refused(self) -> str:
+        """Names of the controls that say what cannot be used."""
+        labels = {path: one.label for path, one in self._controls.items()}
+        return " and ".join(labels.get(path, path) for path in self.form.refused)
 
     def _follow_if(self, state: State) -> None:
         if state is self.state:
@@ -237,6 +259,8 @@ class Session:
 
     def _file(self, name: str) -> Mapping[str, Any]:
         """A file to keep; a report takes longer, and comes when it is done."""
+        if self.form.refused:
+            raise InputError(f"nothing is saved while {self._refused()} cannot be used as typed")
         loop = self.state.loop()
         if name == "toml":
             marks = "".join(f"# {line}\n" for line in not_measured(self.state.begun))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 
@@ -97,13 +97,13 @@ def not_measured(begun: Mapping[str, str]) -> list[str]:
     ]
 
 
-def head(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:
+def head(verdict: Verdict | None, note: str = "", doubts: Iterable[str] = ()) -> Html:
     """Outcome and claim; None while it is being worked out.
 
     `note`: a line below, such as that more is being worked out.
-    `begun`: numbers of the device that nobody gave.
+    `doubts`: why it is not to be taken for the answer.
     """
-    marks = join(*(element("p", line, **{"class": "bad"}) for line in not_measured(begun)))
+    marks = join(*(element("p", line, **{"class": "bad"}) for line in doubts))
     quiet = element("p", note, **{"class": "quiet"}) if note else join()
     said = (quiet or element("p", WAITING)) if verdict is None else join(headline(verdict), quiet)
     return join(marks, said)

@@ -297,7 +297,7 @@ class Touches:
         self._controls = {one.path: one for one in made}
         holding = (name for name, one in OPERATORS.items() if one.motion in ("", state.motion))
         options = [(name, name.replace("-", " ")) for name in holding]
-        self.form.groups = [group("Hand", [choice("operator", "kind", options, kind), *map(shown, made)])]
+        self.form.draw([group("Hand", [choice("operator", "kind", options, kind), *map(shown, made)])])
 
     def _follow(self) -> None:
         """Another device may have another hand, or its numbers other units."""

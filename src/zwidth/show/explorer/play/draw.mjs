@@ -1,4 +1,4 @@
-/* The pictures: the handle with hand and wall, or the wheel, or two arms; and what was in the last seconds. */
+/* The pictures: a handle, a wheel or a knob with hand and wall, or two of them; and what was in the last seconds. */
 
 export const SECONDS = 8;
 const BINS = 320;
@@ -57,15 +57,18 @@ export function across(position, reach, width) {
     return width / 2 + (position / reach) * (width / 2);
 }
 
-/* The handle or the arms, the law's force as a shade, and the hand. */
+/* Handles that slide, or that turn; the law's force as a shade, and the hand. */
 export function stage(canvas, look, colours) {
     const { pen, width, height } = fitted(canvas);
+    (look.thing === "handle" ? slides : turns)(pen, look, width, height, colours);
+}
+
+function slides(pen, look, width, height, colours) {
     const place = (x) => across(x, look.reach, width);
     shade(pen, look, width, height, colours);
     const lane = height / (look.arms.length + 1);
-    if (look.rotary && look.arms.length === 1) wheel(pen, look, width, height, colours);
     look.arms.forEach((arm, i) => {
-        const y = look.rotary && look.arms.length === 1 ? height - 48 : lane * (i + 1);
+        const y = lane * (i + 1);
         line(pen, [[0, y], [width, y]], colours.faint, 1);
         handle(pen, place(arm.position), y, width, colours);
         push(pen, place(arm.position), y, arm.force / look.full, colours);
@@ -76,13 +79,17 @@ export function stage(canvas, look, colours) {
 }
 
 function shade(pen, look, width, height, colours) {
-    const most = Math.min(look.full, Math.max(1e-12, ...look.profile.map(Math.abs)));
+    const most = strongest(look);
     look.profile.forEach((force, i) => {
         pen.globalAlpha = Math.min(0.45, (0.45 * Math.abs(force)) / most);
         column(pen, i, look.profile.length, width, 0, height, colours.wall);
     });
     pen.globalAlpha = 1;
     if (look.oneSided) line(pen, [[width / 2, 0], [width / 2, height]], colours.wall, 3);
+}
+
+function strongest({ full, profile }) {
+    return Math.min(full, Math.max(1e-12, ...profile.map(Math.abs)));
 }
 
 function handle(pen, x, y, width, colours) {
@@ -114,26 +121,84 @@ function hand(pen, anchor, x, y, held, colours) {
         for (let i = 1; i < 12; i += 1) points.push([anchor + ((x - anchor) * i) / 12, top + 18 * (i / 12) + (i % 2 ? 4 : -4)]);
         line(pen, [...points, [x, y - 16]], colours.hand, 2);
     }
-    pen.fillStyle = held ? colours.hand : "transparent";
-    pen.strokeStyle = colours.hand;
+    disc(pen, [held ? anchor : x, top], 8, held ? colours.hand : "transparent", colours.hand);
+}
+
+const RING = 14, ROOM = 48;
+
+/* Where the i-th of so many wheels or knobs is: its middle and its rim. */
+export function dial(i, many, width, height) {
+    const x = (width * (i + 0.5)) / many, y = height / 2 + 8;
+    return { x, y, r: Math.max(24, Math.min(height / 2 - ROOM, width / (2 * many) - ROOM)) };
+}
+
+/* Angle 0 is up, and positive to the right; beyond half a turn to either side the law is not drawn. */
+function turns(pen, look, width, height, colours) {
+    look.arms.forEach((arm, i) => {
+        const { x, y, r } = dial(i, look.arms.length, width, height), turn = arm.position;
+        const at = (angle, radius) => [x + radius * Math.sin(angle), y - radius * Math.cos(angle)];
+        const arc = (from, to, radius, many = 72) => Array.from({ length: many + 1 }, (_, k) => at(from + ((to - from) * k) / many, radius));
+        ring(pen, look, arc, at, r, colours);
+        if (look.thing === "wheel") {
+            line(pen, arc(0, 2 * Math.PI, r), colours.ink, 9);
+            for (const spoke of [1, 2]) line(pen, [[x, y], at(turn + (spoke * 2 * Math.PI) / 3, r)], colours.ink, 6);
+            line(pen, [[x, y], at(turn, r)], colours.hand, 6);
+        } else {
+            disc(pen, [x, y], r, colours.ink, colours.ink);
+            line(pen, [at(turn, 0.45 * r), at(turn, r)], colours.ground, 5);
+        }
+        const span = -Math.max(-1, Math.min(1, arm.force / look.full)) * 1.5, tip = turn + span, back = tip - Math.sign(span) * 0.16;
+        if (Math.abs(span) > 0.02) {
+            line(pen, arc(turn, tip, 0.62 * r), colours.force, 4);
+            line(pen, [at(back, 0.62 * r - 7), at(tip, 0.62 * r), at(back, 0.62 * r + 7)], colours.force, 4);
+        }
+        if (i === 0) {
+            const out = arc(turn, look.anchor, r + 7, 12);
+            if (look.held) line(pen, arc(turn, look.anchor, r, 12).map((point, k) => (k % 2 ? out[k] : point)), colours.hand, 2);
+            disc(pen, at(look.held ? look.anchor : turn, r), 9, look.held ? colours.hand : "transparent", colours.hand);
+        }
+        if (arm.name) middled(pen, arm.name, x, height - 6, 13, colours.soft);
+    });
+    if (look.arms.length > 1) return;
+    const size = Math.max(13, Math.min(28, width / 30)), y = width > 600 ? height / 2 : 30;
+    look.told.forEach(([name, value], i) => {
+        middled(pen, name, (width * (1 + 4 * i)) / 6, y - size, 13, colours.soft);
+        middled(pen, value, (width * (1 + 4 * i)) / 6, y + 2, size, colours.ink);
+    });
+}
+
+/* The law's torque around the rim, where it begins, and angles. */
+function ring(pen, look, arc, at, r, colours) {
+    const most = strongest(look), step = (2 * look.reach) / look.profile.length, shown = Math.min(look.reach, Math.PI);
+    line(pen, arc(-shown, shown, r + RING), colours.faint, 1);
+    look.profile.forEach((force, i) => {
+        const from = i * step - look.reach;
+        if (from < -shown || from + step > shown) return;
+        pen.globalAlpha = Math.min(0.7, (0.7 * Math.abs(force)) / most);
+        line(pen, arc(from, from + step, r + RING, 1), colours.wall, RING);
+    });
+    pen.globalAlpha = 1;
+    if (look.oneSided) line(pen, [at(0, r + 6), at(0, r + 8 + RING)], colours.wall, 3);
+    for (const part of [-1, -0.5, 0, 0.5, 1]) {
+        const angle = part * look.reach, [x, y] = at(angle, r + RING + 18 + 10 * Math.abs(Math.sin(angle)));
+        if (Math.abs(angle) < 2.5) middled(pen, look.mark(angle), x, y + 4, 12, colours.soft);
+    }
+}
+
+function disc(pen, [x, y], r, fill, edge) {
+    pen.fillStyle = fill;
+    pen.strokeStyle = edge;
     pen.lineWidth = 2;
     pen.beginPath();
-    pen.arc(held ? anchor : x, top, 8, 0, 2 * Math.PI);
+    pen.arc(x, y, r, 0, 2 * Math.PI);
     pen.fill();
     pen.stroke();
 }
 
-function wheel(pen, look, width, height, colours) {
-    const r = Math.max(20, height / 2 - 52), x = width / 2, y = height / 2 - 42, turn = look.arms[0].position;
-    pen.strokeStyle = colours.ink;
-    pen.lineWidth = 9;
-    pen.beginPath();
-    pen.arc(x, y, r, 0, 2 * Math.PI);
-    pen.stroke();
-    for (const spoke of [0, 1, 2]) {
-        const angle = turn - Math.PI / 2 + (spoke * 2 * Math.PI) / 3;
-        line(pen, [[x, y], [x + r * Math.cos(angle), y + r * Math.sin(angle)]], spoke ? colours.ink : colours.force, 6);
-    }
+function middled(pen, words, x, y, size, colour) {
+    pen.font = `${size}px system-ui, sans-serif`;
+    pen.textAlign = "center";
+    text(pen, words, x, y, colour);
 }
 
 function ruler(pen, look, width, height, colours) {

@@ -27,6 +27,7 @@ from zwidth.model.device import Device, Transmission
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator import LinearHand, Tracking, usual_hand
+from zwidth.model.operator.named import usual_kind
 from zwidth.model.pairs import Pair
 from zwidth.passivity.check import check
 from zwidth.passivity.result import Answer
@@ -44,7 +45,11 @@ _REACH = {"linear": 0.02, "rotary": 1.0}
 _OUTSIDE = -0.4
 """Of the reach: where a touch of a wall begins."""
 
-_DO = "Take the handle, go to the wall and press; then let go."
+_DO = {
+    "handle": "Take the handle, go to the wall and press; then let go.",
+    "wheel": "Take the wheel, turn it to the right until it resists, and press; then let go.",
+    "knob": "Take the knob, turn it to the right until it resists, and press; then let go.",
+}
 _NOTICE = "Whether it comes to rest, and whether the hand gets out more energy than it put in."
 
 
@@ -57,7 +62,7 @@ def played(
     hand: LinearHand | None = None,
     start: float | None = None,
     reach: float | None = None,
-    do: str = _DO,
+    do: str = "",
     notice: str = _NOTICE,
     decide: Callable[[Device, Environment], Answer] = check,
 ) -> Played:
@@ -112,7 +117,7 @@ def played(
         law=text,
         arms=[arm],
         reach=shown,
-        do=do,
+        do=do or _DO[_thing(device)],
         notice=notice,
     )
 
@@ -125,7 +130,7 @@ def played_pair(
     hand: LinearHand | None = None,
     follower: LinearHand | None = None,
     reach: float | None = None,
-    do: str = "Lead the upper arm; then let go.",
+    do: str = "",
     notice: str = _NOTICE,
 ) -> Played:
     """Two arms, ready for a page; the hand holds the leader.
@@ -173,9 +178,14 @@ def played_pair(
             for device, arm, h in zip(devices, setup.arms, (holding, other), strict=True)
         ],
         reach=_REACH[pair.motion] if reach is None else reach,
-        do=do,
+        do=do or f"Lead the {'upper arm' if pair.motion == 'linear' else 'left one'}; then let go.",
         notice=notice,
     )
+
+
+def _thing(device: Device) -> str:
+    """What a hand holds of it."""
+    return {"finger": "handle", "hands-on": "wheel", "fingers-on": "knob"}[usual_kind(device)]
 
 
 def _still(hand: LinearHand) -> Tracking:
@@ -253,10 +263,12 @@ class Played:
 
     def facts(self) -> dict[str, Any]:
         """All that the page shows and runs, but the law, as plain data."""
+        device = self.loop[0].leader if isinstance(self.loop[0], Pair) else self.loop[0]
         units = {name: GLOSSARY[name].unit_for(self.motion) for name in ("position", "velocity", "force")}
         return {
             "name": self.name,
             "motion": self.motion,
+            "thing": _thing(device),
             "do": self.do,
             "notice": self.notice,
             "outcome": self.verdict.outcome,
@@ -292,8 +304,9 @@ class Played:
 
 def _device_numbers(device: Device, whose: str = "") -> Iterator[tuple[str, str, str]]:
     for key, value in device.parameters().items():
-        own = GLOSSARY[key]
-        yield own.symbol, f"{in_words(key)}{whose}", shown(value, own.unit_for(device.motion))
+        own, turns = GLOSSARY[key], device.motion == "rotary" and key == "mass"
+        symbol, name = ("J", "inertia") if turns else (own.symbol, in_words(key))
+        yield symbol, f"{name}{whose}", shown(value, own.unit_for(device.motion))
     if device.transmission is not None:
         for key, value in device.transmission.parameters().items():
             own = parameters_of(Transmission)[key].quantity

@@ -2,7 +2,7 @@
 
 import { Player, loud, profile } from "./player.mjs";
 import { Sound, Waveform } from "./sound.mjs";
-import { energy, stage, trace } from "./draw.mjs";
+import { dial, energy, stage, trace } from "./draw.mjs";
 
 const PLACES = 160;
 const SAID_EVERY_MS = 6000;
@@ -43,7 +43,7 @@ class View {
 
     coloured() {
         const style = getComputedStyle(document.documentElement);
-        const names = ["ink", "soft", "faint", "wall", "force", "hand", "good", "bad", "loss"];
+        const names = ["ground", "ink", "soft", "faint", "wall", "force", "hand", "good", "bad", "loss"];
         this.colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     }
 
@@ -61,6 +61,7 @@ class View {
         this.at("outcome").style.background = facts.colour;
         this.at("numbers").replaceChildren(...facts.numbers.map(numbers));
         this.at("assumptions").replaceChildren(...facts.assumptions.map((line) => made("li", line)));
+        this.at("stage").setAttribute("aria-label", `The hand on the ${facts.thing}`);
         this.at("described").textContent = `${facts.do} ${facts.notice}`;
     }
 
@@ -87,15 +88,16 @@ class View {
         const { player, facts, colours } = this, { engine } = player, { history } = player;
         const names = engine.arms.length > 1 ? ["leader", "follower"] : [""];
         stage(this.at("stage"), {
-            reach: facts.reach, rotary: facts.motion === "rotary", oneSided: facts.one_sided, full: this.full,
+            reach: facts.reach, thing: facts.thing, oneSided: facts.one_sided, full: this.full,
+            told: [[this.names.position, this.length(engine.arms[0].position, 1)], [this.names.force, this.size(engine.arms[0].force)]],
             profile: this.profile, anchor: engine.pointer, held: engine.held, mark: (x) => this.length(x, 0),
             arms: engine.arms.map(({ position, force }, i) => ({ position, force, name: names[i] })),
         }, colours);
         if (this.calm.matches && now - this.drawn < 500 && this.charted) return;
         this.drawn = now;
         this.charted = true;
-        trace(this.at("force"), history, "force", (most) => `force, up to ${this.size(most)}`, colours.force, colours);
-        trace(this.at("position"), history, "position", (most) => `position, up to ${this.length(most, 1)}`, colours.hand, colours);
+        trace(this.at("force"), history, "force", (most) => `${this.names.force}, up to ${this.size(most)}`, colours.force, colours);
+        trace(this.at("position"), history, "position", (most) => `${this.names.position}, up to ${this.length(most, 1)}`, colours.hand, colours);
         energy(this.at("energy"), history, (high) => `energy put in by hand, taken by friction; up to ${joules(high)}`, colours);
     }
 
@@ -104,7 +106,7 @@ class View {
         this.told = now;
         const { player, facts } = this, { engine } = player, [arm] = engine.arms, sums = player.sums;
         for (const key of ["work", "out", "motor", "loss"]) this.at(key).textContent = joules(sums[key]);
-        const told = `handle at ${this.length(arm.position, 1)}, force ${this.size(arm.force)}, ${engine.held ? "held" : "let go"}`;
+        const told = `${facts.thing} at ${this.length(arm.position, 1)}, ${this.names.force} ${this.size(arm.force)}, ${engine.held ? "held" : "let go"}`;
         const stage = this.at("stage");
         stage.setAttribute("aria-valuenow", String(Math.round((100 * engine.pointer) / facts.reach)));
         stage.setAttribute("aria-valuetext", told);
@@ -113,7 +115,7 @@ class View {
         this.said = now;
         this.last = told;
         const swing = player.history.swing("force", 1);
-        const shakes = swing > 0.02 * this.full ? ` The force goes up and down by ${this.size(swing)}.` : "";
+        const shakes = swing > 0.02 * this.full ? ` The ${this.names.force} goes up and down by ${this.size(swing)}.` : "";
         this.at("live").textContent = `${told}.${shakes} The hand put in ${joules(sums.work)}, friction took ${joules(sums.loss)}.`;
     }
 
@@ -142,15 +144,29 @@ class View {
     /* The pointer is the hand; so are the arrow keys. */
     hands() {
         const stage = this.at("stage");
-        const aim = (e) => this.player.aim(((2 * e.offsetX) / stage.clientWidth - 1) * this.facts.reach);
+        const aim = (e) => {
+            if (this.facts.motion === "rotary") this.turn(e);
+            else this.player.aim(((2 * e.offsetX) / stage.clientWidth - 1) * this.facts.reach);
+        };
         stage.addEventListener("pointerdown", (e) => {
             stage.setPointerCapture(e.pointerId);
             this.grip(true);
+            this.angle = undefined;
             aim(e);
         });
         stage.addEventListener("pointermove", (e) => stage.hasPointerCapture(e.pointerId) && aim(e));
         for (const end of ["pointerup", "pointercancel"]) stage.addEventListener(end, () => this.grip(false));
         stage.addEventListener("keydown", (e) => this.key(e));
+    }
+
+    /* By what the pointer went round the middle, also more than once; taken anywhere, it stays where it is. */
+    turn({ offsetX, offsetY }) {
+        const { clientWidth, clientHeight } = this.at("stage");
+        const { x, y, r } = dial(0, this.facts.arms.length, clientWidth, clientHeight);
+        if (Math.hypot(offsetX - x, offsetY - y) < 0.2 * r) return;
+        const angle = Math.atan2(offsetX - x, y - offsetY), went = angle - (this.angle ?? angle);
+        this.angle = angle;
+        this.player.aim(this.player.target + went - 2 * Math.PI * Math.round(went / (2 * Math.PI)));
     }
 
     key(e) {
@@ -180,18 +196,29 @@ class View {
         setTimeout(() => URL.revokeObjectURL(address), 10000);
     }
 
+    /* What position and force are called. */
+    get names() {
+        return this.facts.motion === "rotary" ? { position: "angle", force: "torque" } : { position: "position", force: "force" };
+    }
+
     length(x, digits) {
-        return this.facts.motion === "rotary" ? `${((x * 180) / Math.PI).toFixed(digits)}°` : `${(x * 1000).toFixed(digits)} mm`;
+        return this.facts.motion === "rotary" ? `${fixed((x * 180) / Math.PI, digits)}°` : `${fixed(x * 1000, digits)} mm`;
     }
 
     size(force) {
-        return `${force.toFixed(2)} ${this.facts.force_unit}`;
+        return `${fixed(force, 2)} ${this.facts.force_unit}`;
     }
 }
 
 function joules(energy) {
     const milli = energy * 1000;
-    return Math.abs(milli) < 1000 ? `${milli.toFixed(2)} mJ` : `${energy.toFixed(2)} J`;
+    return Math.abs(milli) < 1000 ? `${fixed(milli, 2)} mJ` : `${fixed(energy, 2)} J`;
+}
+
+/* A number with a minus that is one, and none before 0. */
+function fixed(value, digits) {
+    const text = value.toFixed(digits);
+    return Number(text) === 0 ? text.replace("-", "") : text.replace("-", "\u2212");
 }
 
 function numbers([symbol, name, value]) {
