@@ -85,7 +85,8 @@ def test_where_friction_lacks_the_damping_that_is_enough_says_so():
     arm = ARM.replace(damping=2, coulomb_friction="0.004", resolution="1e-4")
     verdict = zw.check(zw.Pair(arm, arm, stiffness=400))
     assert verdict.outcome == "active"
-    assert plots.plot_pair(verdict).axes[0].get_title(loc="left") == "shaded: enough damping, not friction"
+    words = plots.plot_pair(verdict).axes[0].get_legend().get_texts()
+    assert words[0].get_text() == "enough damping, not friction"
 
 
 # ---- one arm of a pair in a known hand

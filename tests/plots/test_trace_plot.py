@@ -16,10 +16,10 @@ def test_a_trace_has_three_panels_with_units(hand, tmp_path) -> None:
     trace = zw.simulate(PADDLE, zw.Wall(500.0), hand, 0.2)
     figure = trace_figure(trace)
     above, middle, below = figure.axes
-    assert "position [" in above.get_ylabel()
-    assert "force [" in middle.get_ylabel()
-    assert "energy [" in below.get_ylabel()
-    assert below.get_xlabel() == "time [ms]"
+    assert "position x [" in above.get_ylabel()
+    assert "force f [" in middle.get_ylabel()
+    assert "energy W [" in below.get_ylabel()
+    assert below.get_xlabel() == "time t [ms]"
     for suffix in ("png", "svg", "pdf"):
         trace.zwidth.plot(tmp_path / f"touch.{suffix}")
         assert (tmp_path / f"touch.{suffix}").stat().st_size > 5000

@@ -134,7 +134,7 @@ def test_the_picture_shows_what_is_known(tmp_path: Path) -> None:
     inside = zw.null_space(FINGER, zw.Wall(200), within=0.02, **ASKED)
     assert "if larger" in inside.plot().axes[0].get_title(loc="left")
     damper = zw.null_space(FINGER, zw.Wall(20), rate=1000, stiffness=0, damping=0.01, rest=REST)
-    assert not damper.plot().axes[0].lines
+    assert len(damper.plot().axes) == 1
 
 
 def test_without_coulomb_friction_nothing_is_covered() -> None:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 
 from zwidth.passivity.transmission import TransmissionVerdict
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.show.plots.style import (
     BLUE,
     GREY,
@@ -18,11 +17,13 @@ from zwidth.show.plots.style import (
     OUTCOME,
     PURPLE,
     RED,
+    axis,
     heading,
     label,
+    legend,
     number,
     quantity_text,
-    scale,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -53,37 +54,37 @@ def draw_circle(axes: Axes, verdict: TransmissionVerdict) -> None:
     if verdict.resonance is not None and verdict.resonance < half:
         text = f"the motor swings at {number(verdict.resonance)} Hz"
         axes.axvline(verdict.resonance, color=GREY, lw=1, ls=":", label=text)
-    axes.set_xlim(0, half)
+    shown = [*marked, *(f for f, r in zip(frequencies, radii, strict=True) if r < 1)]
+    axes.set_xlim(0, min(half, 2 * max(shown, default=half)))
     reach = max(0.05, 3 * (1 - min(radii)))
     axes.set_ylim(1 - reach, 1 + 2 * reach)
     axes.set_xlabel(label("frequency"))
-    axes.set_ylabel("distance from the circle's middle [radii]")
+    axes.set_ylabel(with_unit("distance from the circle's middle", "radii"))
+    legend(axes)
     heading(axes, f"{verdict.outcome}: {verdict.decided_by}", color=OUTCOME[verdict.outcome])
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)
 
 
 def draw_replayed(rows: Sequence[Axes], found: ReplayedMotion) -> None:
     """Handle and motor, force of the actuator and energy out, on three axes one above the other."""
     trace, motion = found.trace, found.device.motion
-    factor, unit = scale([found.sample_period * found.motion.samples], "s")
+    factor, text = axis([found.sample_period * found.motion.samples], "time")
     times = factor * trace["time"].values
+    rows[2].set_xlabel(text)
     x, x1 = trace["position"].values, trace["motor_position"].values
-    size, length = scale([*x, *x1], GLOSSARY["position"].unit_for(motion))
-    rows[0].plot(times, size * x1, color=ORANGE, lw=1, label="motor")
-    rows[0].plot(times, size * x, color=BLUE, label="handle")
-    rows[0].set_ylabel(label("position", motion, "", length))
-    rows[0].legend(loc="upper right", ncols=2)
-    rows[0].margins(y=0.3)
+    factor, text = axis([*x, *x1], "position", motion)
+    rows[0].plot(times, factor * x1, color=ORANGE, lw=1, label="motor")
+    rows[0].plot(times, factor * x, color=BLUE, label="handle")
+    rows[0].set_ylabel(text)
+    legend(rows[0])
     force = trace["actuator_force"].values
-    size, newton = scale(force, GLOSSARY["force"].unit_for(motion))
-    rows[1].step(times, size * force, where="post", color=PURPLE, lw=1)
-    rows[1].set_ylabel(label("force", motion, "", newton))
+    factor, text = axis(force, "force", motion)
+    rows[1].step(times, factor * force, where="post", color=PURPLE, lw=1)
+    rows[1].set_ylabel(text)
     out = -trace["hand_work"].values
-    size, joule = scale(out, "J")
-    rows[2].plot(times, size * out, color=RED, gid="energy")
+    factor, text = axis(out, "energy", text="energy out")
+    rows[2].plot(times, factor * out, color=RED, gid="energy")
     rows[2].axhline(0, color=GREY, lw=0.6)
-    rows[2].set_ylabel(f"energy out [{joule}]")
-    rows[2].set_xlabel(f"time t [{unit}]")
+    rows[2].set_ylabel(text)
     rows[0].set_xlim(times[0], times[-1])
     energy = quantity_text(found.energy, "energy")
     heading(rows[0], f"replayed in the simulator: {energy} taken out", color=RED)

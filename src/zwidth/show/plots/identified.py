@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from textwrap import fill
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from matplotlib import rc_context
@@ -28,11 +27,16 @@ from zwidth.show.plots.style import (
     LOOK,
     ORANGE,
     RED,
+    SMALL,
+    WIDEST,
+    broken,
     heading,
+    legend,
     low_index,
     new_figure,
     page_heading,
     scale,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -45,6 +49,9 @@ _BEYOND = 1.15
 _CONFIDENCE = 0.95
 """Of the bands, the error bars and the curve below the data."""
 
+_LINE = 15
+"""Between two of the numbers [point]."""
+
 _MOST = 6000
 """Pulses that are drawn as points."""
 
@@ -54,19 +61,19 @@ _SECONDS = 3.0
 
 @rc_context(LOOK)
 def identification_figure(identified: IdentifiedNumbers) -> Figure:
-    """Friction against speed beside the numbers; below, some seconds of the log and what is left over."""
-    figure = new_figure(11.0, 7.4)
-    grid = figure.add_gridspec(2, 1, height_ratios=(1.25, 1.0))
-    upper = grid[0].subgridspec(1, 2, width_ratios=(1.75, 1.0))
-    draw_friction_points(figure.add_subplot(upper[0]), identified)
-    _numbers(figure.add_subplot(upper[1]), identified)
-    lower = grid[1].subgridspec(1, 3, width_ratios=(1.75, 1.15, 0.6))
+    """Friction against speed, the numbers below it; then some seconds of the log and what is left over."""
+    told = (_LINE * len(rows(identified, _CONFIDENCE)), 1.4 * SMALL * len(_found(identified)))
+    heights = (4.2, 0.2 + max(told) / 72, 2.9)
+    figure = new_figure(height=sum(heights))
+    grid = figure.add_gridspec(3, 1, height_ratios=heights)
+    draw_friction_points(figure.add_subplot(grid[0]), identified)
+    _numbers(figure.add_subplot(grid[1]), identified)
+    lower = grid[2].subgridspec(1, 3, width_ratios=(1.4, 1.1, 0.6))
     _data(figure.add_subplot(lower[0]), identified)
     left = figure.add_subplot(lower[1])
     _left(left, identified)
     _histogram(figure.add_subplot(lower[2], sharey=left), identified)
     page_heading(figure, title(identified))
-    figure.set_layout_engine("constrained", w_pad=0.06, h_pad=0.08, hspace=0.05, wspace=0.04)
     return figure
 
 
@@ -78,6 +85,7 @@ def draw_friction_points(axes: Axes, identified: IdentifiedNumbers) -> None:
     points = _thinned(identified)
     velocity = points["speed"].values
     friction = points["friction"].values * np.sign(velocity)
+    axes.plot([], [], ".", color=GREY, label="means over pulses")
     axes.plot(velocity, friction, ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
     end = _BEYOND * float(np.abs(velocity).max())
     along = np.linspace(0.0, end, 50)
@@ -96,10 +104,10 @@ def draw_friction_points(axes: Axes, identified: IdentifiedNumbers) -> None:
     low, high = np.quantile(friction, [0.01, 0.99])
     axes.set_ylim(min(low, 0.0), 1.25 * high)
     axes.set_xlim(-end, end)
-    axes.set_xlabel(f"velocity v, into the wall on the right [{_speed(identified)}]")
-    axes.set_ylabel(f"friction [{_force(identified)}]")
-    axes.set_title("friction against the motion")
-    axes.legend(loc="upper center", fontsize=7)
+    axes.set_xlabel(with_unit("velocity v, into the wall on the right", _speed(identified)))
+    axes.set_ylabel(with_unit("friction", _force(identified)))
+    legend(axes)
+    heading(axes, "friction against the motion")
 
 
 def _damping_by_side(identified: IdentifiedNumbers) -> list[tuple[float, Estimate]]:
@@ -175,11 +183,10 @@ def _data(axes: Axes, identified: IdentifiedNumbers) -> None:
     axes.plot(
         np.insert(moment, breaks, np.nan), np.insert(model, breaks, np.nan), color=BLUE, lw=1.2, label="model"
     )
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"{what} [{_force(identified)}]")
-    axes.set_title("some seconds of the log")
-    axes.margins(y=0.15)
-    axes.legend(loc="upper right", ncols=2, borderaxespad=0.1)
+    axes.set_xlabel("time t [s]")
+    axes.set_ylabel(with_unit(what, _force(identified)))
+    legend(axes)
+    heading(axes, "some seconds of the log")
 
 
 def _left(axes: Axes, identified: IdentifiedNumbers) -> None:
@@ -194,10 +201,10 @@ def _left(axes: Axes, identified: IdentifiedNumbers) -> None:
     axes.plot(middle, [float(left[part].mean()) for part in parts], "o", ms=4, color=ORANGE, label="means")
     reach = 4.0 * float(left.std())
     axes.set_ylim(-reach, reach)
-    axes.set_xlabel(f"velocity [{_speed(identified)}]")
-    axes.set_ylabel(f"left over [{_force(identified)}]")
-    axes.set_title("what the model leaves")
-    axes.legend(loc="upper left", borderaxespad=0.1)
+    axes.set_xlabel(with_unit("velocity v", _speed(identified)))
+    axes.set_ylabel(with_unit("left over", _force(identified)))
+    legend(axes)
+    heading(axes, "left over")
 
 
 def _histogram(axes: Axes, identified: IdentifiedNumbers) -> None:
@@ -211,21 +218,18 @@ def _histogram(axes: Axes, identified: IdentifiedNumbers) -> None:
         orientation="horizontal",
         color=GREY,
         alpha=0.5,
+        label="seen",
     )
     at = np.linspace(-reach, reach, 201)
     counts, force = expected_scatter(identified)
     both = float(np.hypot(counts, force))
     if both > 0:
         bell = np.exp(-((at / both) ** 2) / 2) / (both * np.sqrt(2 * np.pi))
-        axes.plot(bell, at, color=BLUE, lw=1.2)
-    unit = _force(identified)
-    share = (
-        f"deviation {left.std():.3g} {unit};\nexpected {both:.3g}:\nnoise {force:.2g},\nencoder {counts:.2g}"
-    )
-    axes.text(0.98, 0.99, share, transform=axes.transAxes, ha="right", va="top", fontsize=7.5)
+        axes.plot(bell, at, color=BLUE, lw=1.2, label="expected")
     axes.tick_params(labelleft=False)
     axes.set_xticks([])
     axes.spines["bottom"].set_visible(False)
+    legend(axes)
 
 
 def expected_scatter(identified: IdentifiedNumbers) -> tuple[float, float]:
@@ -244,24 +248,33 @@ def expected_scatter(identified: IdentifiedNumbers) -> tuple[float, float]:
     return float(counts), noise
 
 
-def _numbers(axes: Axes, identified: IdentifiedNumbers) -> None:
-    axes.set_axis_off()
-    table = rows(identified, _CONFIDENCE)
-    for k, row in enumerate(table):
-        y = 0.97 - 0.085 * k
-        way = row.name.strip() if row.name.startswith(" ") else ""
-        axes.text(0.0, y, f"{low_index(row.symbol)} {way}", va="top", color=BLACK)
-        axes.text(0.2, y, f"{row.value} {row.unit}", va="top", color=BLACK, fontweight="bold")
-        axes.text(0.64, y, row.interval, va="top", color=GREY)
-    below = 0.97 - 0.085 * len(table) - 0.04
-    milliseconds = 1e3 * identified.pulse_length
+def _found(identified: IdentifiedNumbers) -> list[str]:
+    """What is said of the numbers, on lines that fill half of the width."""
+    unit, (counts, force) = _force(identified), expected_scatter(identified)
+    left = float(identified.points["residual"].values.std())
     text = [
         f"{percent(_CONFIDENCE)} intervals; r² = {identified.explained:.4f}",
-        f"{identified.strokes} strokes, {identified.pulses} means over {milliseconds:.3g} ms",
-        *(f"· {finding}" for finding in identified.findings),
+        f"{identified.strokes} strokes, {identified.pulses} means "
+        f"over {1e3 * identified.pulse_length:.3g} ms",
+        f"left over: deviation {left:.3g} {unit}, expected {float(np.hypot(counts, force)):.3g} (noise "
+        f"{force:.2g}, encoder {counts:.2g})",
+        *identified.findings,
     ]
-    lines = "\n".join(fill(line, 62, subsequent_indent="  ") for line in text)
-    axes.text(0.0, below, lines, va="top", fontsize=7.5, color=GREY, parse_math=False)
+    broad = (broken(f"· {line}", 0.48 * WIDEST, SMALL).replace("\n", "\n  ") for line in text)
+    return "\n".join(broad).splitlines()
+
+
+def _numbers(axes: Axes, identified: IdentifiedNumbers) -> None:
+    """The numbers on the left, what was found on the right."""
+    axes.set_axis_off()
+    place: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "top", "color": BLACK}
+    for k, row in enumerate(rows(identified, _CONFIDENCE)):
+        way = row.name.strip() if row.name.startswith(" ") else ""
+        axes.annotate(f"{low_index(row.symbol)} {way}", (0.0, 1.0), (0, -_LINE * k), **place)
+        axes.annotate(f"{row.value} {row.unit}", (0.1, 1.0), (0, -_LINE * k), **place, fontweight="bold")
+        axes.annotate(row.interval, (0.29, 1.0), (0, -_LINE * k), **{**place, "color": GREY})
+    lines = "\n".join(_found(identified))
+    axes.annotate(lines, (0.5, 1.0), (0, 0), **place, fontsize=SMALL, parse_math=False)
 
 
 def _thinned(identified: IdentifiedNumbers) -> xr.Dataset:
@@ -323,7 +336,7 @@ def fit_figure(fit: Fit) -> Figure:
     """
     if fit.time is None:
         raise InputError("this fit does not hold the times of its samples: there is nothing to draw")
-    figure = new_figure(7.4, 5.2)
+    figure = new_figure(height=5.2)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1.0))
     draw_fit(above, fit, fit.time)
     draw_left(below, fit, fit.time)
@@ -347,8 +360,8 @@ def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
     axes.plot(
         time, factor * (fit.output - fit.residuals), color=BLUE, lw=1.4, label=f"{fit.model.name}, fitted"
     )
-    axes.set_ylabel(f"{'force' if fit.response == 'force' else 'depth'} [{unit}]")
-    axes.legend(loc="best")
+    axes.set_ylabel(with_unit("force" if fit.response == "force" else "depth", unit))
+    legend(axes)
 
 
 def draw_left(axes: Axes, fit: Fit, time: Array) -> None:
@@ -357,14 +370,14 @@ def draw_left(axes: Axes, fit: Fit, time: Array) -> None:
     every = slice(None, None, max(1, time.size // MOST_DOTS))
     axes.axhline(0.0, color=GREY, lw=0.8)
     axes.plot(time[every], factor * fit.residuals[every], ".", ms=2.5, color=RED, mew=0)
-    axes.set_ylabel(f"left over [{unit}]")
+    axes.set_ylabel(with_unit("left over", unit))
     heading(axes, "measured less fitted: noise, where the model is right")
 
 
 @rc_context(LOOK)
 def test_figure(test: History, best: Fit) -> Figure:
     """The response with the fit, what is left over, and the history that it answers."""
-    figure = new_figure(7.4, 6.4)
+    figure = new_figure(height=6.8)
     above, below, history = figure.subplots(3, 1, sharex=True, height_ratios=(2.2, 1.0, 1.0))
     time = test.time
     draw_fit(above, best, time)
@@ -372,7 +385,7 @@ def test_figure(test: History, best: Fit) -> Figure:
     given, unit, name = (test.force, "N", "force") if test.kind == "creep" else (test.depth, "m", "depth")
     factor, shown_unit = scale(given, unit)
     history.plot(time, factor * given, color=BLACK, lw=1.2)
-    history.set_ylabel(f"{name} [{shown_unit}]")
+    history.set_ylabel(with_unit(name, shown_unit))
     history.set_xlabel("time t [s]")
     page_heading(figure, f"{test.kind} test, {fit_title(best)}")
     return figure

@@ -6,7 +6,7 @@ below the device's damping b, at every frequency up to half the sample rate.
 
 from __future__ import annotations
 
-from math import cos, inf, isfinite, log, pi
+from math import cos, inf, isfinite, pi
 from statistics import median
 
 from matplotlib import rc_context
@@ -27,6 +27,7 @@ from zwidth.show.plots.style import (
     drawn_in,
     heading,
     label,
+    legend,
     new_figure,
     number,
     symbol,
@@ -60,7 +61,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     motion = verdict.device.motion
     factor, unit = drawn_in("damping", motion)
     needs, b = [factor * need for need in needs], factor * float(verdict.decision.loop.damping)
-    low, high = damping_range(needs, b)
+    low, high = damping_range(needs, b, room=0.12)
     wanting = [n > b for n in needs]
     if any(wanting):
         axes.fill_between(
@@ -78,8 +79,8 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     _mark(axes, verdict, needs, (low, high))
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(label("damping", motion, "required damping"))
+    legend(axes)
     heading(axes, f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
-    axes.legend(loc="upper left")
 
 
 def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float], list[float]]:
@@ -99,15 +100,15 @@ def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float
     return frequencies, [known[f] for f in frequencies]
 
 
-def damping_range(needs: list[float], b: float) -> tuple[float, float]:
-    """Ends of the vertical axis: all of the curve, unless it has no end."""
+def damping_range(needs: list[float], b: float, room: float = 0.45) -> tuple[float, float]:
+    """Ends of the vertical axis: all of the curve, unless it has no end, and some room above it."""
     finite = [n for n in needs if isfinite(n)]
     top = max([b, *finite])
     if len(finite) < len(needs):
         top = 10 * max(b, abs(median(finite)) if finite else 1.0)
     bottom = max(min(0.0, *finite), -top)  # how far it lies below zero is of no interest
     span = (top - bottom) or 1.0
-    return (bottom - 0.05 * span if bottom < 0 else 0.0), top + 0.45 * span
+    return (bottom - 0.05 * span if bottom < 0 else 0.0), top + room * span
 
 
 def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], limits: tuple[float, float]) -> None:
@@ -116,23 +117,17 @@ def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], limits: tuple[
     if limits[0] < 0:
         axes.axhline(0, color=GREY, lw=0.6)
     if verdict.required_damping is None and need < inf:
-        axes.text(0.03, 0.66, "no damping is enough", transform=axes.transAxes, fontsize=8.5)
+        axes.plot([], [], ls="none", label="no damping is enough")
         return
     if need == inf:
-        text, height = f"no damping is enough at {number(peak)} Hz", limits[1] * 0.68
+        text, height = f"no damping is enough at {number(peak)} Hz", limits[1] * 0.9
     elif max(needs) - min(needs) <= _FLAT * abs(need):
         text, height = f"{number(need)} {unit} at every frequency", need
     else:
         place = f"at {number(peak)} Hz" if peak else "towards 0 Hz"
         text, height = f"{number(need)} {unit} {place}", need
-    nyquist = 0.5 / float(verdict.decision.loop.period)
-    slowest = axes.get_xlim()[0]
-    at = max(peak, slowest)
-    across = log(at / slowest) / log(nyquist / slowest) if slowest else min(at / nyquist, 1.0)
-    axes.plot([at], [height], "o", color=RED, ms=6, clip_on=False, zorder=5, gid="critical")
-    side = "left" if across < 0.35 else "right" if across > 0.65 else "center"
-    shift = {"left": 6, "right": -6, "center": 0}[side]
-    axes.annotate(text, (at, height), (shift, 7), textcoords="offset points", ha=side, fontsize=8.5)
+    at = max(peak, axes.get_xlim()[0])
+    axes.plot([at], [height], "o", color=RED, ms=6, clip_on=False, zorder=5, gid="critical", label=text)
 
 
 # The budget: what leaks energy, against what takes it out.
@@ -152,7 +147,7 @@ def budget(verdict: LinearVerdict) -> Figure:
 
     The second pair is left out for an ideal encoder.
     """
-    figure = new_figure(6.4, 3.6 if has_friction(verdict) else 2.2)
+    figure = new_figure(height=3.6 if has_friction(verdict) else 2.2)
     rows = figure.subplots(2 if has_friction(verdict) else 1, 1, squeeze=False)
     draw_damping(rows[0][0], verdict)
     if has_friction(verdict):
@@ -176,7 +171,7 @@ def draw_damping(axes: Axes, verdict: LinearVerdict) -> None:
             total = f"asked in all: {number(asked)}"
             axes.plot([asked] * 2, [0.6, 1.4], color=BLACK, lw=2, label=total)
     else:
-        axes.text(0.02, 0.72, "no damping is enough", transform=axes.transAxes)
+        _words(axes, "no damping is enough")
     has = factor * account.damping
     axes.barh(0, has, height=0.6, color=BLACK, gid="b")
     _finish(axes, ("leaks", f"b = {number(has)}"))
@@ -188,10 +183,10 @@ def draw_friction(axes: Axes, verdict: LinearVerdict) -> None:
     account, motion = verdict.budget, verdict.device.motion
     need = account.friction_required
     if need is not None:
-        name = "K Δ/2" if verdict.decision.is_spring else "largest force error"
-        _stack(axes, [(need, f"one encoder count, {name}", SKY)])
+        name = "encoder count, K Δ/2" if verdict.decision.is_spring else "largest error of a count"
+        _stack(axes, [(need, name, SKY)])
     else:
-        axes.text(0.02, 0.72, "no sufficient friction is known for this law", transform=axes.transAxes)
+        _words(axes, "none is known to be enough for this law")
     axes.barh(0, account.coulomb_friction, height=0.6, color=BLACK, gid="f_c")
     _finish(axes, ("leaks", f"{symbol('coulomb_friction')} = {number(account.coulomb_friction)}"))
     axes.set_xlabel(label("coulomb_friction", motion, "Coulomb friction"))
@@ -202,7 +197,7 @@ def _stack(axes: Axes, shares: list[tuple[float, str, str]]) -> None:
     ends = {True: 0.0, False: 0.0}
     largest = max(abs(value) for value, _, _ in shares)
     if largest == 0:
-        axes.text(0.01, 1, "nothing", va="center", transform=axes.get_yaxis_transform())
+        _words(axes, "nothing")
     for value, text, colour in shares:
         if abs(value) > _TINY * largest:
             axes.barh(
@@ -210,6 +205,11 @@ def _stack(axes: Axes, shares: list[tuple[float, str, str]]) -> None:
                 label=f"{text}: {number(value)}", gid="leak",
             )  # fmt: skip
             ends[value > 0] += value
+
+
+def _words(axes: Axes, text: str) -> None:
+    """In the place of the upper bar."""
+    axes.text(0.02, 1, text, va="center", transform=axes.get_yaxis_transform())
 
 
 def _finish(axes: Axes, names: tuple[str, str]) -> None:
@@ -221,6 +221,5 @@ def _finish(axes: Axes, names: tuple[str, str]) -> None:
         axes.set_xlim(0, 1)
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)
-    handles, _ = axes.get_legend_handles_labels()
-    if handles:
-        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0.2, handlelength=1.2)
+    axes.locator_params(axis="x", nbins=5)
+    legend(axes)

@@ -14,12 +14,13 @@ import numpy as np
 import xarray as xr
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.colors import BoundaryNorm, ListedColormap, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from zwidth.errors import InputError
 from zwidth.passivity.scope import TOLD
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken, spoken_data
 from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.show.plots.style import (
@@ -32,14 +33,19 @@ from zwidth.show.plots.style import (
     PURPLE,
     RED,
     SKY,
+    SMALL,
     heading,
     label,
+    legend,
+    legend_of_all,
     new_figure,
     note,
     number,
     save_figure,
     scale,
+    symbol,
     verbatim,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -98,15 +104,15 @@ def z_width_figure(found: xr.Dataset) -> Figure:
         raise InputError("this is no Z-width map: z_width makes one")
     found = _told(found)
     near = _corner(found)
-    figure = new_figure(12.4 if near is not None else 8.0, 4.6)
+    figure = new_figure(height=4.8)
     axes = figure.subplots(1, 2 if near is not None else 1, squeeze=False)[0]
-    draw_z_width(axes[0], found)
+    _draw(axes[0], found)
     hands = any(str(name).startswith("stable_") for name in found.data_vars)
     title = "stable with a known hand" if hands else "passive walls"
     heading(axes[0], f"{found.attrs['device']}: {title}", parse_math=False)
     note(axes[0], _free(found))
     if near is not None:
-        draw_z_width(axes[1], near)
+        _draw(axes[1], near)
         drawn = _speeds(axes[1], near)
         heading(
             axes[1],
@@ -114,18 +120,8 @@ def z_width_figure(found: xr.Dataset) -> Figure:
             if drawn
             else "close-up of what is passive",
         )
-    _legend_beside(figure)
+    legend_of_all(figure, figure.axes[0].get_legend_handles_labels()[0])
     return figure
-
-
-def _legend_beside(figure: Figure) -> None:
-    """The legend of the whole map to the right of the picture, where no curve runs, for the close-up too."""
-    handles, words = figure.axes[0].get_legend_handles_labels()
-    for axes in figure.axes:
-        legend = axes.get_legend()
-        if legend is not None:
-            legend.remove()
-    figure.legend(handles, words, loc="outside right upper")
 
 
 def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
@@ -138,7 +134,11 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     found
         What `zwidth.z_width` returned.
     """
-    found = _told(found)
+    _draw(axes, _told(found))
+    legend(axes)
+
+
+def _draw(axes: Axes, found: xr.Dataset) -> None:
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
     apart = found.attrs.get("transmission", "rigid") != "rigid"
@@ -164,7 +164,6 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     axes.set_ylim(k[0], k[-1])
     axes.set_xlabel(label("virtual_damping", motion))
     axes.set_ylabel(label("stiffness", motion))
-    axes.legend(loc="upper right", frameon=True, framealpha=0.85, edgecolor="none")
 
 
 def _told(found: xr.Dataset) -> xr.Dataset:
@@ -226,7 +225,7 @@ def _speeds(axes: Axes, found: xr.Dataset) -> bool:
         colors=[GREY], linewidths=0.7, linestyles="-",
     )  # fmt: skip
     unit = unit_text(found["admissible_speed"].attrs["units"])
-    axes.clabel(drawn, fontsize=7.5, fmt=lambda level: f"{number(10**level)} {unit}")
+    axes.clabel(drawn, fontsize=SMALL, fmt=lambda level: f"{number(10**level)} {unit}")
     return True
 
 
@@ -312,7 +311,7 @@ def sweep_figure(found: xr.Dataset, variable: str | None = None) -> Figure:
     if name not in found.data_vars:
         raise InputError(f"there is no {name} in this sweep; it has {', '.join(map(str, found.data_vars))}")
     if len(found.dims) == 1:
-        figure = new_figure(6.4, 4.0)
+        figure = new_figure()
         _curve(figure.add_subplot(), found, name)
         return figure
     return _maps(found, name)
@@ -327,9 +326,14 @@ def _drawn(found: xr.Dataset) -> str:
 def _maps(found: xr.Dataset, name: str) -> Figure:
     across = list(found.dims)[2:]
     places = np.unique(np.linspace(0, found.sizes[across[0]] - 1, _PANELS).astype(int)) if across else [None]
-    figure = new_figure(3.6 * len(places) + 2.4, 4.2)
-    axes = figure.subplots(1, len(places), sharey=True, squeeze=False)[0]
+    rows, columns = (len(places) + 1) // 2, min(len(places), 2)
+    figure = new_figure(height=0.8 + 3.4 * rows)
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    for spare in axes[len(places) :]:
+        spare.remove()
+    axes = axes[: len(places)]
     for one, place in zip(axes, places, strict=True):
+        one.tick_params(labelbottom=True)
         part = found if place is None else found.isel({across[0]: int(place)})
         drawn = _map(one, part, name)
         if place is not None:
@@ -340,10 +344,10 @@ def _maps(found: xr.Dataset, name: str) -> Figure:
         else:
             heading(one, str(found.attrs["loop"]), parse_math=False)
     if name == "outcome":
-        figure.legend(handles=_patches(found), loc="outside right upper", frameon=False)
+        legend_of_all(figure, _patches(found))
     else:
         bar = figure.colorbar(drawn, ax=list(axes))
-        bar.set_label(_label(found[name], unit_text(found[name].attrs.get("units", ""))))
+        bar.set_label(_label(found[name], found[name].attrs.get("units", "")))
     return figure
 
 
@@ -370,14 +374,20 @@ def _outcomes(axes: Axes, x: Any, y: Any, words: Any) -> Any:
     places = np.zeros(words.shape)
     for place, word in enumerate(known, start=1):
         places[words == word] = place
-    colours = ListedColormap(["#ffffff", *(TOLD[word].colour for word in known)])
+    colours = ListedColormap(["#ffffff", *map(_shade, known)])
     norm = BoundaryNorm(np.arange(len(known) + 2) - 0.5, colours.N)
-    return axes.pcolormesh(x, y, places, cmap=colours, norm=norm, shading="nearest", alpha=0.85)
+    return axes.pcolormesh(x, y, places, cmap=colours, norm=norm, shading="nearest")
 
 
 def _patches(found: xr.Dataset) -> list[Patch]:
     there = set(np.unique(found["outcome"].values).tolist())
-    return [Patch(facecolor=told.colour, label=word) for word, told in TOLD.items() if word in there]
+    return [Patch(facecolor=_shade(word), label=word) for word in TOLD if word in there]
+
+
+def _shade(outcome: str) -> str:
+    """Its colour; what is passive in a light one, so that it differs in grey too."""
+    strong = {"passive": 0.45, "active": 1.0}.get(outcome, 0.7)
+    return to_hex([1 - strong * (1 - part) for part in to_rgb(TOLD[outcome].colour)])
 
 
 def _curve(axes: Axes, found: xr.Dataset, name: str) -> None:
@@ -393,7 +403,8 @@ def _curve(axes: Axes, found: xr.Dataset, name: str) -> None:
     if _is_log(x):
         axes.set_xscale("log")
     axes.set_xlabel(along.label)
-    axes.set_ylabel(_label(found[name], unit_text(found[name].attrs.get("units", ""))))
+    axes.set_ylabel(_label(found[name], found[name].attrs.get("units", "")))
+    legend(axes)
     heading(axes, str(found.attrs["loop"]), parse_math=False)
 
 
@@ -408,7 +419,6 @@ def _mark(axes: Axes, x: Any, words: Any) -> None:
                 x[where], foot, marks.get(word, "d"), ms=4, color=told.colour, label=word,
                 transform=axes.get_xaxis_transform(), clip_on=False,
             )  # fmt: skip
-    axes.legend(frameon=False)
 
 
 def _is_log(values: Any) -> bool:
@@ -430,5 +440,7 @@ def _scaled(values: xr.DataArray) -> _Scaled:
 
 
 def _label(values: xr.DataArray, unit: str) -> str:
-    name = in_words(str(values.name)).replace("max stiffness", "largest passive stiffness")
-    return name if unit in ("", "1") else f"{name} [{unit}]"
+    key = str(values.name)
+    name = "largest passive stiffness" if key == "max_stiffness" else in_words(key)
+    name += f" {symbol(key)}" if key in GLOSSARY else ""
+    return name if unit in ("", "1") else with_unit(name, unit)

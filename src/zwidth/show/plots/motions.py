@@ -26,7 +26,6 @@ from zwidth.passivity.result import Evidence
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.show.plots.cables import draw_replayed
 from zwidth.show.plots.replay import WHOLE, Replay, replay
 from zwidth.show.plots.style import (
@@ -36,12 +35,14 @@ from zwidth.show.plots.style import (
     ORANGE,
     PURPLE,
     RED,
+    axis,
     heading,
-    label,
+    legend,
     new_figure,
     quantity_text,
     scale,
     shown_name,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def witness(verdict: Verdict) -> Figure:
     InputError
         If the verdict has no witness.
     """
-    figure = new_figure(6.4, 5.0)
+    figure = new_figure(height=5.0)
     rows = figure.subplots(3, 1, sharex=True)
     draw_witness(list(rows), verdict)
     return figure
@@ -88,13 +89,13 @@ def draw_motion(rows: Sequence[Axes], found: Moves) -> None:
         draw_cycle(rows, found)
         return
     played = replay(found)
-    factor, unit = scale([played.times[-1] - played.times[0]], "s")
+    factor, text = axis([played.times[-1] - played.times[0]], "time")
     times = [factor * t for t in played.times]
     _positions(rows[0], found, played, times)
     _forces(rows[1], found, played, times)
-    _energy(rows[2], played, times)
+    _energy(rows[2], played.energies, times)
     heading(rows[0], _title(found, played.caption), color=RED)
-    rows[2].set_xlabel(f"time t [{unit}]")
+    rows[2].set_xlabel(text)
     rows[0].set_xlim(times[0], times[-1])
 
 
@@ -108,35 +109,43 @@ def _title(found: Witness, caption: str) -> str:
 
 def _positions(axes: Axes, found: Witness, played: Replay, times: list[float]) -> None:
     motion = found.setting.motion
-    factor, unit = scale(played.positions, GLOSSARY["position"].unit_for(motion))
+    factor, text = axis(played.positions, "position", motion)
     values = [factor * p for p in played.positions]
     dots = "o" if len(played.sampled) <= _DOTS else ""
-    axes.plot(times, values, color=BLUE, marker=dots, markevery=played.sampled, ms=3.5)
+    axes.plot(times, values, color=BLUE, marker=dots, markevery=played.sampled, ms=3.5, label="position")
     step = factor * float(found.setting.resolution)
     if step:
         edges = range(ceil(min(values) / step - 1e-9), floor(max(values) / step + 1e-9) + 1)
         if len(edges) <= _EDGES:
-            for n in edges:
-                axes.axhline(n * step, color=GREY, lw=0.7, ls=":", gid="edge")
+            _edges(axes, [n * step for n in edges])
     elif min(values) < 0 < max(values):
         axes.axhline(0, color=GREY, lw=0.6)
-    axes.set_ylabel(label("position", motion, "", unit))
+    axes.set_ylabel(text)
+
+
+def _edges(axes: Axes, places: Sequence[float]) -> None:
+    """Where the encoder counts, and a legend that says so."""
+    for n, place in enumerate(places):
+        name = None if n else "edges of the encoder's counts"
+        axes.axhline(place, color=GREY, lw=0.7, ls=":", gid="edge", label=name)
+    if places:
+        legend(axes)
 
 
 def _forces(axes: Axes, found: Witness, played: Replay, times: list[float]) -> None:
     motion = found.setting.motion
-    factor, unit = scale(played.forces, GLOSSARY["force"].unit_for(motion))
+    factor, text = axis(played.forces, "force", motion)
     axes.stairs([factor * f for f in played.forces], times, color=PURPLE, lw=1.6, baseline=None)
     if min(played.forces) <= 0 <= max(played.forces):
         axes.axhline(0, color=GREY, lw=0.6)
-    axes.set_ylabel(label("force", motion, "", unit))
+    axes.set_ylabel(text)
 
 
-def _energy(axes: Axes, played: Replay, times: list[float]) -> None:
-    factor, unit = scale(played.energies, "J")
-    axes.plot(times, [factor * e for e in played.energies], color=RED, gid="energy")
+def _energy(axes: Axes, energies: Sequence[float], times: Sequence[float]) -> None:
+    factor, text = axis(energies, "energy", text="energy out")
+    axes.plot(times, [factor * e for e in energies], color=RED, gid="energy")
     axes.axhline(0, color=GREY, lw=0.6)
-    axes.set_ylabel(f"energy out [{unit}]")
+    axes.set_ylabel(text)
 
 
 _ROUND_EDGES = 16
@@ -155,7 +164,7 @@ def cycle(gain: Gain) -> Figure:
     gain
         `zwidth.available_storage(…).witness`.
     """
-    figure = new_figure(6.4, 5.0)
+    figure = new_figure(height=5.0)
     draw_cycle(list(figure.subplots(3, 1, sharex=True)), gain)
     return figure
 
@@ -171,12 +180,12 @@ def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
     times = [n * samples + t for n in range(rounds) for t in once.times[:-1]] + [rounds * samples]
     x = [*once.positions[:-1] * rounds, once.positions[-1]]
     _round_positions(rows[0], times, x, once.resolution, motion)
-    factor, unit = scale(once.forces, GLOSSARY["force"].unit_for(motion))
+    factor, text = axis(once.forces, "force", motion)
     rows[1].stairs([factor * f for f in once.forces * rounds], times, color=PURPLE, baseline=None)
     rows[1].axhline(0, color=GREY, lw=0.6)
-    rows[1].set_ylabel(label("force", motion, "", unit))
+    rows[1].set_ylabel(text)
     out = [n * once.energies[-1] + e for n in range(rounds) for e in once.energies[:-1]]
-    _round_energy(rows[2], times, [*out, rounds * once.energies[-1]])
+    _energy(rows[2], [*out, rounds * once.energies[-1]], times)
     rows[2].set_xlabel("sample k, the law settled")
     rows[2].set_xlim(0, times[-1])
     rows[2].xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -187,23 +196,15 @@ def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
 def _round_positions(
     axes: Axes, times: Sequence[float], x: Sequence[float], resolution: float, motion: str
 ) -> None:
-    factor, unit = scale(x, GLOSSARY["position"].unit_for(motion))
-    axes.plot(times, [factor * v for v in x], color=BLUE)
+    factor, text = axis(x, "position", motion)
+    axes.plot(times, [factor * v for v in x], color=BLUE, label="position")
     if len(x) <= _DOTS:  # a dot where the encoder is read
         read = [(t, factor * v) for t, v in zip(times, x, strict=True) if t == round(t)]
         axes.plot(*zip(*read, strict=True), "o", color=BLUE, ms=3.5, clip_on=False, gid="samples")
     edges = range(floor(min(x) / resolution + 1e-9), ceil(max(x) / resolution - 1e-9) + 1)
     if len(edges) <= _ROUND_EDGES:
-        for n in edges:
-            axes.axhline(factor * n * resolution, color=GREY, lw=0.7, ls=":", gid="edge")
-    axes.set_ylabel(label("position", motion, "", unit))
-
-
-def _round_energy(axes: Axes, times: Sequence[float], energies: Sequence[float]) -> None:
-    factor, unit = scale(energies, "J")
-    axes.plot(times, [factor * e for e in energies], color=RED, gid="energy")
-    axes.axhline(0, color=GREY, lw=0.6)
-    axes.set_ylabel(f"energy out [{unit}]")
+        _edges(axes, [factor * n * resolution for n in edges])
+    axes.set_ylabel(text)
 
 
 # Worst-case J* of a spring wall behind an encoder (Abbott & Okamura 2005, figures 4 and 5).
@@ -255,13 +256,12 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
     axes.set_xlim(x[0], x[-1])
     for place, word in ((0.25, "compression"), (0.75, "release")):
         axes.text(place, 0.02, word, transform=axes.transAxes, ha="center", va="bottom", color=GREY)
-    axes.set_xlabel(f"way out in one sample λ [{metres}]")
-    axes.set_ylabel(label("energy", text="beyond an ideal spring,", unit=joules).replace(" W ", " J* "))
+    axes.set_xlabel(with_unit("way out in one sample λ", metres))
+    axes.set_ylabel(with_unit("beyond an ideal spring, J*", joules))
     k = quantity_text(float(Exact(stiffness)), "stiffness", device.motion)
-    text = f"{shown_name(device)}, K = {k}: {region}"
-    heading(axes, text, parse_math=False)
     axes.margins(y=0.12)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)
+    legend(axes)
+    heading(axes, f"{shown_name(device)}, K = {k}: {region}", parse_math=False)
 
 
 def _span(device: Device, k: Fraction) -> Fraction:

@@ -24,7 +24,6 @@ from zwidth.passivity.pairs.held import HeldVerdict
 from zwidth.passivity.pairs.held.verdict import HeldCriterion
 from zwidth.passivity.pairs.limits import MOST_SAMPLES, largest_stiffness, samples_around
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.text import quantity_unit
 from zwidth.show.plots.style import (
     BLUE,
     GREEN,
@@ -33,13 +32,18 @@ from zwidth.show.plots.style import (
     OUTCOME,
     PURPLE,
     RED,
+    axis,
+    drawn_in,
     heading,
     label,
+    legend,
     new_figure,
     number,
     page_heading,
-    scale,
+    quantity_text,
+    with_unit,
 )
+from zwidth.show.plots.traces import ARMS
 
 Array = NDArray[np.float64]
 
@@ -60,14 +64,14 @@ def plot_pair(verdict: PairVerdict) -> Figure:
         What `zwidth.check` returned of a `zwidth.Pair`.
     """
     moved = verdict.witness is not None
-    figure = new_figure(7.2, 6.8 if moved else 3.7)
-    grid = figure.add_gridspec(3 if moved else 1, 2, height_ratios=[2.2, 1, 1] if moved else [1])
+    figure = new_figure(height=8.0 if moved else 4.2)
+    grid = figure.add_gridspec(3 if moved else 1, 2, height_ratios=[2, 1, 1] if moved else [1])
     draw_pair_damping(figure.add_subplot(grid[0, 0]), verdict)
     draw_pair_link(figure.add_subplot(grid[0, 1]), verdict)
     if moved:
         draw_pair_motion(figure.add_subplot(grid[1, :]), verdict)
         draw_pair_energy(figure.add_subplot(grid[2, :]), verdict)
-    page_heading(figure, f"{verdict.outcome}: {verdict.claim}", 10, OUTCOME[verdict.outcome])
+    page_heading(figure, f"{verdict.outcome}: {verdict.claim}", color=OUTCOME[verdict.outcome])
     return figure
 
 
@@ -81,25 +85,26 @@ def draw_pair_damping(axes: Axes, verdict: PairVerdict) -> None:
     verdict
         What `zwidth.check` returned of a `zwidth.Pair`.
     """
-    leader, follower = damping_boundary(verdict.pair)
-    here = [float(side.damping) for side in verdict.pair.sides]
-    unit = quantity_unit("damping", verdict.pair.motion)
+    factor, unit = drawn_in("damping", verdict.pair.motion)
+    leader, follower = (factor * side for side in damping_boundary(verdict.pair))
+    here = [factor * float(side.damping) for side in verdict.pair.sides]
     shown = np.isfinite(follower)
     top, low = float(leader.max()), 0.0
     if min(here) > 0 and min(here) < top / _FAR:
         low = min(here) / 3
         axes.set(xscale="log", yscale="log")
-    axes.fill_between(leader[shown], follower[shown], 1e3 * top, color=GREEN, alpha=0.16, lw=0)
+    inside = verdict.criterion.holds and not verdict.passive
+    enough = "enough damping, not friction" if inside else "enough damping"
+    axes.fill_between(leader[shown], follower[shown], 1e3 * top, color=GREEN, alpha=0.16, lw=0, label=enough)
     edge = leader[shown][:1], np.full(int(shown.any()), 1e3 * top)  # left of it none is enough
     axes.plot(
         np.append(edge[0], leader[shown]), np.append(edge[1], follower[shown]), color=GREEN, gid="boundary"
     )
     axes.set(xlim=(low, top), ylim=(low, top))
-    axes.set_xlabel(f"damping of the leader [{unit}]")
-    axes.set_ylabel(f"damping of the follower [{unit}]")
-    inside = verdict.criterion.holds and not verdict.passive
-    axes.set_title("shaded: enough damping, not friction" if inside else "shaded: enough damping")
+    axes.set_xlabel(with_unit("damping of the leader b", unit))
+    axes.set_ylabel(with_unit("damping of the follower b", unit))
     _mark(axes, verdict, here[0], here[1])
+    heading(axes, "which dampings are enough")
 
 
 def damping_boundary(pair: Pair) -> tuple[Array, Array]:
@@ -138,21 +143,22 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     """
     pair = verdict.pair
     delays, stiffness = link_limits(pair)
-    seconds, unit = scale([float(delays[-1])], "s")
-    ends = seconds * delays
-    top, low = 1.3 * max(float(pair.felt_stiffness), float(stiffness.max())), 0.0
+    which = "each way" if pair.there == pair.back else "mean of there and back"
+    seconds, text = axis([float(delays[-1])], "link_delay", text=f"link delay, {which}")
+    factor = drawn_in("stiffness", pair.motion)[0]
+    ends, stiffness, felt = seconds * delays, factor * stiffness, factor * float(pair.felt_stiffness)
+    top, low = 1.3 * max(felt, float(stiffness.max())), 0.0
     if 0 < stiffness[stiffness > 0].min(initial=top) < top / _FAR:
         low = float(stiffness[stiffness > 0].min()) / 3
         axes.set_yscale("log")
-    axes.stairs(stiffness[1:], ends, baseline=low, color=GREEN, fill=True, alpha=0.16, lw=0)
+    axes.stairs(stiffness[1:], ends, baseline=low, color=GREEN, fill=True, alpha=0.16, lw=0, label="passive")
     axes.stairs(stiffness[1:], ends, baseline=None, color=GREEN, lw=1.6, gid="stairs")
-    axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False)
+    axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False, label="passive up to here at no delay")
     axes.set(xlim=(0, ends[-1]), ylim=(low, top))
-    which = "each way" if pair.there == pair.back else "mean of there and back"
-    axes.set_xlabel(f"link delay, {which} [{unit}]")
-    axes.set_ylabel(f"stiffness [{quantity_unit('stiffness', pair.motion)}]")
-    axes.set_title("shaded: passive" if stiffness.any() else "none is passive")
-    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.felt_stiffness))
+    axes.set_xlabel(text)
+    axes.set_ylabel(label("stiffness", pair.motion))
+    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, felt)
+    heading(axes, "how stiff over what link" if stiffness.any() else "no stiffness is passive")
 
 
 def link_limits(pair: Pair) -> tuple[Array, Array]:
@@ -187,7 +193,11 @@ def _number(pair: Pair, usual: int) -> int:
 
 def _mark(axes: Axes, verdict: PairVerdict, x: float, y: float) -> None:
     marker = "o" if verdict.outcome == "passive" else "X"
-    axes.plot([x], [y], marker, color=OUTCOME[verdict.outcome], ms=8, clip_on=False, zorder=6, gid="pair")
+    axes.plot(
+        [x], [y], marker, color=OUTCOME[verdict.outcome], ms=8, clip_on=False, zorder=6, gid="pair",
+        label="this pair",
+    )  # fmt: skip
+    legend(axes)
 
 
 def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
@@ -204,21 +214,17 @@ def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
     assert found is not None
     pair = verdict.pair
     step = float(pair.sample_period) / pair.own_readings
-    time, unit = scale([step * len(found.positions[0])], "s")
-    length, far = scale(
-        [float(np.ptp(path)) for path in found.positions], quantity_unit("position", pair.motion)
-    )
-    for path, name, colour, line in zip(
-        found.positions, ("leader", "follower"), (BLUE, RED), ("-", "--"), strict=True
-    ):
+    time, text = axis([step * len(found.positions[0])], "time")
+    axes.set_xlabel(text)
+    length, text = axis([float(np.ptp(path)) for path in found.positions], "position", pair.motion)
+    axes.set_ylabel(text)
+    for path, (name, (colour, line)) in zip(found.positions, ARMS.items(), strict=True):
         axes.plot(time * step * np.arange(len(path)), length * path, line, color=colour, label=name, gid=name)
     rounds = [
         f"samples {p.first} to {p.last}: {p.times:.6g} times" for p in found.leader.repeats if p.times > 1
     ]
-    heading(axes, "; ".join(["a motion of both hands", *rounds]), color=GREY)
-    axes.set_xlabel(f"time [{unit}]")
-    axes.set_ylabel(f"position [{far}]")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    legend(axes)
+    heading(axes, "; ".join(["a motion of both hands", *rounds]))
 
 
 def draw_pair_energy(axes: Axes, verdict: PairVerdict) -> None:
@@ -234,17 +240,15 @@ def draw_pair_energy(axes: Axes, verdict: PairVerdict) -> None:
     found = verdict.witness
     assert found is not None
     instants, energies = energy_in_time(found)
-    (time, unit), (size, joule) = (
-        scale([max(abs(float(v)) for v in values)], name)
-        for values, name in ((instants, "s"), (energies, "J"))
-    )
+    time, text = axis([max(abs(float(v)) for v in instants)], "time", text="time t, every round")
+    axes.set_xlabel(text)
+    size, text = axis([max(abs(float(v)) for v in energies)], "energy", text="energy out")
+    axes.set_ylabel(text)
     axes.axhline(0, color=GREY, lw=0.8)
     axes.plot(
         [time * float(t) for t in instants], [size * float(e) for e in energies], color=PURPLE, gid="energy"
     )
-    heading(axes, f"{number(size * found.energy)} {joule} have come out at the end", color=GREY)
-    axes.set_xlabel(f"time, every round [{unit}]")
-    axes.set_ylabel(f"energy out [{joule}]")
+    heading(axes, f"{quantity_text(found.energy, 'energy')} have come out at the end")
 
 
 # One arm of a pair in a known hand: what damping the other needs at each frequency, and how stiff each hand
@@ -265,40 +269,41 @@ def plot_held_pair(verdict: HeldVerdict) -> Figure:
     """
     criterion = HeldCriterion(verdict.question)
     linear = not criterion.bends
-    figure = new_figure(7.2 if linear else 4.2, 3.4)
+    figure = new_figure(height=4.4 if linear else 3.2)
     if linear:
         draw_held_damping(figure.add_subplot(1, 2, 1), verdict, criterion)
     draw_held_stiffness(figure.add_subplot(1, 2 if linear else 1, 2 if linear else 1), verdict)
-    page_heading(figure, f"{verdict.outcome}: {verdict.limit}", 10, OUTCOME[verdict.outcome])
+    page_heading(figure, f"{verdict.outcome}: {verdict.claim}", color=OUTCOME[verdict.outcome])
     return figure
 
 
 def draw_held_damping(axes: Axes, verdict: HeldVerdict, criterion: HeldCriterion) -> None:
     """At each frequency, of the hand that asks for most; and what the free arm has."""
     motion, free = verdict.pair.motion, verdict.question.free
+    factor, unit = drawn_in("damping", motion)
     nyquist = 0.5 / float(verdict.pair.sample_period)
     angles = np.geomspace(pi / 1000, pi, _POINTS)
-    needs = np.max(
+    needs = factor * np.max(
         [
             [law.required_damping_at(Fraction(float(np.cos(angle)))) for angle in angles]
             for _, law, _ in criterion.corners
         ],
         axis=0,
     )
-    b = float(verdict.question.arms[0].side.damping)
+    b = factor * float(verdict.question.arms[0].side.damping)
     frequencies = angles / pi * nyquist
-    axes.fill_between(frequencies, b, needs, where=(needs > b).tolist(), color=RED, alpha=0.2, lw=0)
+    lacks = (needs > b).tolist()
+    if any(lacks):
+        axes.fill_between(frequencies, b, needs, where=lacks, color=RED, alpha=0.2, lw=0, label="b too small")
     axes.plot(frequencies, needs, color=BLUE, label=f"asked of the {free}")
-    axes.axhline(
-        b, color="black", ls="--", lw=1.4, label=f"it has {number(b)} {quantity_unit('damping', motion)}"
-    )
+    axes.axhline(b, color="black", ls="--", lw=1.4, label=f"it has {number(b)} {unit}")
     top = max(b, float(needs.max()))
     axes.set_ylim(-0.3 * top, 1.2 * top)  # what is below 0 is given back
     axes.set_xscale("log")
     axes.set_xlim(nyquist / 1000, nyquist)
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(label("damping", motion, "required damping"))
-    axes.legend(loc="best")
+    legend(axes)
 
 
 def draw_held_stiffness(axes: Axes, verdict: HeldVerdict) -> None:
@@ -308,9 +313,12 @@ def draw_held_stiffness(axes: Axes, verdict: HeldVerdict) -> None:
         "damps as much": verdict.largest_stiffness_of_any_such_hand,
         "any": verdict.largest_stiffness_of_two_hands,
     }
-    heights = [value or 0.0 for value in limits.values()]
+    factor = drawn_in("stiffness", verdict.pair.motion)[0]
+    heights = [factor * (value or 0.0) for value in limits.values()]
     axes.barh(list(limits), heights, color=[GREEN, BLUE, GREY], height=0.6)
-    axes.axvline(float(verdict.pair.felt_stiffness), color="black", ls="--", lw=1.4)
+    felt = factor * float(verdict.pair.felt_stiffness)
+    axes.axvline(felt, color="black", ls="--", lw=1.4, label="this pair")
     axes.invert_yaxis()
-    axes.set_xlabel(label("stiffness", verdict.pair.motion, "largest stiffness; dashed: this pair,"))
-    axes.set_title(f"hand on the {verdict.question.held}")
+    axes.set_xlabel(label("stiffness", verdict.pair.motion, "largest stiffness"))
+    legend(axes)
+    heading(axes, f"hand on the {verdict.question.held}")

@@ -20,19 +20,22 @@ from zwidth.model.device import Device, catalogue
 from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.show.plots.style import (
-    BLACK,
     BLUE,
     GREEN,
     GREY,
     LOOK,
     RED,
+    SMALL,
     drawn_in,
+    heading,
+    legend,
     low_index,
     new_figure,
     note,
     number,
     quantity_text,
     shown_name,
+    verbatim,
 )
 
 _NEEDED = ("damping", "coulomb_friction", "resolution")
@@ -56,7 +59,7 @@ def plane(device: Device, stiffness: RealLike | None = None, with_catalogue: boo
     InputError
         If the device has no line in the plane.
     """
-    figure = new_figure(5.6, 4.9)
+    figure = new_figure(height=5.4)
     draw_plane(figure.add_subplot(), device, stiffness, with_catalogue)
     return figure
 
@@ -87,14 +90,11 @@ def draw_plane(
         _count_unknown(axes)
     _line(axes, device, (beta * k, sigma * k), x, y)
     passive = point.region == "globally stable"
-    axes.plot([beta], [sigma], "o", color=GREEN if passive else RED, ms=8, zorder=6, gid="device")
-    axes.annotate(
-        f"{shown_name(device)}\nK = {quantity_text(k, 'stiffness', device.motion)}\n{point.region}",
-        (beta, sigma), (9, -4), textcoords="offset points", va="top", fontsize=8.5, color=BLACK, zorder=7,
-        parse_math=False,
-        bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8},
-    )  # fmt: skip
-    axes.set_title("a stiffer wall lies further down and to the left")
+    text = f"{shown_name(device)}, K = {quantity_text(k, 'stiffness', device.motion)}: {point.region}"
+    colour = GREEN if passive else RED
+    axes.plot([beta], [sigma], "o", color=colour, ms=8, zorder=6, gid="device", label=verbatim(text))
+    legend(axes)
+    heading(axes, "a stiffer wall lies further down and to the left")
 
 
 def largest_spring_of(device: Device) -> Exact:
@@ -129,13 +129,13 @@ def _regions(axes: Axes, x: tuple[float, float], y: tuple[float, float], above: 
     over, under, beside, before = (0.5, 5, "bottom"), (0.5, -5, "top"), (0.5, 6, "left"), (0.5, -6, "right")
     places = {
         "globally stable\n(passive)": (right, over) if above else (beside, top),
-        "limit cycles\n(small motions gain)": (right, bottom),
-        "locally stable\n(fast motions gain)": (left, top),
-        "globally unstable": (before, bottom) if above else (left, under),
+        "limit cycles\n(small motions\ngain)": (right, bottom),
+        "locally stable\n(fast motions\ngain)": (left, top),
+        "globally\nunstable": (before, bottom) if above else (left, under),
     }
     for name, ((u, du, ha), (v, dv, va)) in places.items():
         axes.annotate(
-            name, (u, v), (du, dv), textcoords="offset points", ha=ha, va=va, fontsize=8.5, color=GREY
+            name, (u, v), (du, dv), textcoords="offset points", ha=ha, va=va, fontsize=SMALL, color=GREY
         )
     axes.set_xlabel("β = b/(K T)   viscous friction against sampling")
     axes.set_ylabel(low_index("σ = f_c/(K Δ)   dry friction against the encoder"))
@@ -164,7 +164,7 @@ def _line(
             (-5, 3),
             textcoords="offset points",
             ha="right",
-            fontsize=7.5,
+            fontsize=SMALL,
             color=BLUE,
         )
 
@@ -184,7 +184,7 @@ def _mark_others(axes: Axes, others: list[Device]) -> None:
         axes.plot(*([v] for v in place_at_limit(other)), "s", color=GREY, ms=5, gid="catalogue")
         axes.annotate(
             f"{other.name} at {k}",
-            place_at_limit(other), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
+            place_at_limit(other), (7, 5), textcoords="offset points", fontsize=SMALL, color=GREY,
         )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
-from zwidth.loop.trace import UNITS
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -20,14 +19,16 @@ from zwidth.show.plots.style import (
     ORANGE,
     PURPLE,
     RED,
+    axis,
     heading,
     label,
+    legend,
     new_figure,
     page_heading,
-    scale,
-    verbatim,
+    with_unit,
 )
-from zwidth.show.plots.traces import thinned
+from zwidth.show.plots.traces import ARMS, shade_wall, thinned
+from zwidth.showing import printable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,13 +56,13 @@ def recording_figure(data: xr.Dataset) -> Figure:
     data
         Of a recording of two samples at least, `servo.recording.Recording.dataset`.
     """
-    figure = new_figure(8.4, 6.2)
+    figure = new_figure(height=6.4)
     above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1.15, 1, 0.7))
     draw_read_position(above, data)
     draw_given_force(middle, data)
     draw_recorded_lateness(below, data)
-    heading(above, verbatim(str(data.attrs["title"])))
-    below.set_xlabel(f"time [{_time(data)[1]}]")
+    page_heading(figure, printable(str(data.attrs["title"])))
+    below.set_xlabel(_time(data)[1])
     return figure
 
 
@@ -69,16 +70,13 @@ def draw_read_position(axes: Axes, data: xr.Dataset) -> None:
     """The position as it was read; grey lines where a sample had no good answer; the wall is shaded."""
     time = _time(data)[0]
     read = data["measured_position"].values
-    factor, unit = scale([float(np.abs(read).max())], UNITS[str(data.attrs["motion"])][0])
-    axes.plot(*thinned(time, read * factor), color=BLUE)
-    low, high = axes.get_ylim()
-    if high > 0:
-        axes.axhspan(0, high, color=GREY, alpha=0.12, lw=0)
-        axes.set_ylim(low, high)
-    for at in time[data["status"].values != 0][:_MOST_GAPS]:
-        axes.axvline(at, color=GREY, lw=0.6)
-    axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"position [{unit}]\n(wall shaded)")
+    factor, text = axis([float(np.abs(read).max())], "position", str(data.attrs["motion"]))
+    axes.plot(*thinned(time, read * factor), color=BLUE, label="as it was read")
+    shade_wall(axes)
+    for n, at in enumerate(time[data["status"].values != 0][:_MOST_GAPS]):
+        axes.axvline(at, color=RED, lw=1, ls=":", label=None if n else "no good answer")
+    axes.set_ylabel(text)
+    legend(axes)
 
 
 def draw_given_force(axes: Axes, data: xr.Dataset) -> None:
@@ -86,34 +84,36 @@ def draw_given_force(axes: Axes, data: xr.Dataset) -> None:
     time = _time(data)[0]
     wished, given = data["wished_force"].values, data["commanded_force"].values
     largest = max(float(np.abs(wished).max()), float(np.abs(given).max()))
-    factor, unit = scale([largest], UNITS[str(data.attrs["motion"])][2])
+    factor, text = axis([largest], "force", str(data.attrs["motion"]))
     steps: Any = {"drawstyle": "steps-post"}
-    axes.plot(*thinned(time, wished * factor), color=ORANGE, lw=1, label="asked for by the law", **steps)
+    axes.plot(
+        *thinned(time, wished * factor), color=BLACK, ls="--", lw=1, label="asked for by the law", **steps
+    )
     axes.plot(*thinned(time, given * factor), color=PURPLE, lw=1.2, label="given", **steps)
     axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"force [{unit}]")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.set_ylabel(text)
+    legend(axes)
 
 
 def draw_recorded_lateness(axes: Axes, data: xr.Dataset) -> None:
     """How late each sample was; red where samples were missed before it."""
     time = _time(data)[0]
     late, passed = data["late"].values, np.diff(data["sample"].values, prepend=data["sample"].values[0] - 1)
-    factor, unit = scale([float(np.abs(late).max())], "s")
+    factor, text = axis([float(np.abs(late).max())], "time", text="late by")
     axes.plot(*thinned(time, late * factor), color=BLUE, lw=0.8)
     missed = passed > 1
     axes.plot(
         time[missed], late[missed] * factor, color=RED, marker=".", ms=4, ls="", label="after missed ones"
     )
-    axes.set_ylabel(f"late by [{unit}]")
+    axes.set_ylabel(text)
     if missed.any():
-        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        legend(axes)
 
 
 def _time(data: xr.Dataset) -> tuple[Array, str]:
     time = data["time"].values
-    factor, unit = scale([float(time[-1])], "s")
-    return time * factor, unit
+    factor, text = axis([float(time[-1])], "time")
+    return time * factor, text
 
 
 _LEAST = 1e-8
@@ -132,7 +132,7 @@ def plot_lateness(checkup: Any) -> Figure:
     checkup
         A `zwidth.servo.Checkup`, what `zwidth.servo.doctor` gives.
     """
-    figure = new_figure(6.4, 3.6)
+    figure = new_figure(height=3.8)
     draw_lateness(figure.add_subplot(), checkup)
     return figure
 
@@ -150,14 +150,14 @@ def draw_lateness(axes: Axes, checkup: Any) -> None:
         late = np.maximum(lateness.late, _LEAST)
         axes.hist(late, list(edges), histtype="step", color=colour, ls=line, lw=1.4, label=name)
         axes.plot([lateness.quantile(0.999)], [1.0], "v", color=colour, ms=6, mew=0)
-    axes.axvline(period, color=ORANGE, lw=1.0, label="sample period")
+    axes.axvline(period, color=ORANGE, lw=1.4, ls="-.", label="sample period")
     axes.plot([], [], "v", color=BLACK, ms=6, mew=0, label="99.9 % are earlier")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ylim(0.7, None)
-    axes.set_xlabel("late by [s]")
+    axes.set_xlabel(with_unit("late by", "s"))
     axes.set_ylabel("steps")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    legend(axes)
 
 
 class Shaking(Protocol):
@@ -204,7 +204,7 @@ def figure_of(
     """What is drawn above, the spectrum of a recording and the energy of a cycle below."""
     if seen is None:
         raise InputError("nothing vibrates in this recording, so there is no picture of a vibration")
-    figure = new_figure(9.0, 6.6)
+    figure = new_figure(height=6.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(1.1, 1.0))
     draw_cycles(figure.add_subplot(grid[0, :]), seen)
     _spectrum(figure.add_subplot(grid[1, 0]), recording, seen)
@@ -222,28 +222,21 @@ def last_cycles(vibration: Vibration, period: float) -> slice:
 def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
     part = last_cycles(seen.vibration, recording.period)
     t = recording.time[part]
-    length, force = ("rad", "N*m") if seen.rotary else ("m", "N")
-    factor, unit = scale(recording.position[part] - recording.position[part].mean(), length)
-    axes.plot(t, factor * recording.position[part], color=BLUE, label="position")
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(label("position", recording.motion, unit=unit), color=BLUE)
+    swing = recording.position[part] - recording.position[part].mean()
+    factor, text = axis(swing, "position", recording.motion)
+    axes.plot(t, factor * recording.position[part], color=BLUE, label="position, on the left")
+    axes.set_xlabel("time t [s]")
+    axes.set_ylabel(text)
     beside = axes.twinx()
-    for values, colour, name in (
-        (recording.commanded, GREY, "commanded"),
-        (recording.applied, ORANGE, "of the motor"),
+    beside.spines["right"].set_visible(True)
+    for values, colour, line, name in (
+        (recording.commanded, BLACK, "--", "commanded force"),
+        (recording.applied, ORANGE, "-", "force of the motor"),
     ):
         if values is not None:
-            beside.plot(t, values[part], color=colour, drawstyle="steps-post", label=name)
-    beside.set_ylabel(label("force", recording.motion, unit=force))
-    lines = [*axes.get_lines(), *beside.get_lines()]
-    axes.legend(
-        lines,
-        [str(line.get_label()) for line in lines],
-        loc="lower right",
-        bbox_to_anchor=(1, 1),
-        ncols=3,
-        fontsize=8,
-    )
+            beside.plot(t, values[part], color=colour, ls=line, lw=1.3, drawstyle="steps-post", label=name)
+    beside.set_ylabel(label("force", recording.motion))
+    legend(axes, [*axes.get_lines(), *beside.get_lines()])
 
 
 def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
@@ -253,14 +246,15 @@ def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
     y = (x - np.polyval(np.polyfit(np.arange(x.size), x, 1), np.arange(x.size))) * np.hanning(x.size)
     size = 2 * np.abs(np.fft.rfft(y)) / np.hanning(x.size).sum()
     frequencies = np.fft.rfftfreq(x.size, recording.period)
-    factor, unit = scale(size, "rad" if seen.rotary else "m")
+    factor, text = axis(size, "position", "rotary" if seen.rotary else "linear", "amplitude")
     axes.semilogy(frequencies[1:], factor * size[1:] + 1e-12, color=BLUE)
-    axes.axvline(vibration.frequency, color=RED, linewidth=0.8)
+    at = f"it shakes at {vibration.frequency:.4g} Hz"
+    axes.axvline(vibration.frequency, color=RED, ls="--", lw=1.2, label=at)
     axes.set_xlim(0, min(frequencies[-1], 6 * vibration.frequency))
     axes.set_ylim(bottom=factor * size.max() * 1e-4)
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel(f"amplitude [{unit}]")
-    heading(axes, f"{vibration.frequency:.4g} Hz")
+    axes.set_xlabel(label("frequency"))
+    axes.set_ylabel(text)
+    legend(axes)
 
 
 def _energy(axes: Axes, seen: Shaking) -> None:
@@ -268,13 +262,13 @@ def _energy(axes: Axes, seen: Shaking) -> None:
     terms = {name: work for name, work in seen.supplied.items() if work}
     if seen.lost is not None:
         terms["friction"] = -seen.lost
-    factor, unit = scale(terms.values(), "J")
+    factor, text = axis(terms.values(), "energy", text="energy in a cycle")
     names = list(terms)[::-1]
     colours = [RED if terms[name] > 0 else GREY for name in names]
     axes.barh(names, [factor * terms[name] for name in names], color=colours)
-    axes.axvline(0, color="black", linewidth=0.8)
-    axes.set_xlabel(f"energy in a cycle [{unit}]")
-    heading(axes, "into the motion (orange), out of it (grey)")
+    axes.axvline(0, color=BLACK, lw=0.8)
+    axes.set_xlabel(text)
+    heading(axes, "right: into the motion, left: out of it")
 
 
 def pair_figure(recording: PairRecording, seen: PairEvidence | None, claim: str) -> Figure:
@@ -292,9 +286,10 @@ def pair_figure(recording: PairRecording, seen: PairEvidence | None, claim: str)
 def _pair_cycles(axes: Axes, recording: PairRecording, seen: PairEvidence) -> None:
     part = last_cycles(seen.vibration, recording.leader.period)
     moved = [arm.position[part] for arm in recording.arms]
-    factor, unit = scale(np.concatenate([x - x.mean() for x in moved]), "rad" if seen.rotary else "m")
-    for x, colour, name in zip(moved, (BLUE, ORANGE), ("leader", "follower"), strict=True):
-        axes.plot(recording.leader.time[part], factor * x, color=colour, label=name)
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel(label("position", recording.leader.motion, unit=unit))
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, fontsize=8)
+    swings = np.concatenate([x - x.mean() for x in moved])
+    factor, text = axis(swings, "position", recording.leader.motion)
+    for x, (name, (colour, line)) in zip(moved, ARMS.items(), strict=True):
+        axes.plot(recording.leader.time[part], factor * x, color=colour, ls=line, label=name)
+    axes.set_xlabel("time t [s]")
+    axes.set_ylabel(text)
+    legend(axes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -19,7 +19,7 @@ from zwidth.show.plots.cables import draw_circle
 from zwidth.show.plots.linear import draw_criterion, draw_damping, draw_friction, has_friction
 from zwidth.show.plots.motions import draw_motion, draw_witness
 from zwidth.show.plots.planes import draw_plane, has_plane
-from zwidth.show.plots.scene import draw_scene
+from zwidth.show.plots.scene import draw_scene, size_of
 from zwidth.show.plots.storages import draw_storage
 from zwidth.show.plots.style import (
     LOOK,
@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 
 Draw = Callable[[Figure, SubplotSpec, Any], None]
 
+_HIGH, _LOW = 4.5, 3.5
+"""Of a row of panels with a motion, on three axes, and of another [inch]."""
+
 
 @rc_context(LOOK)
 def check_figure(verdict: Verdict) -> Figure:
@@ -46,14 +49,17 @@ def check_figure(verdict: Verdict) -> Figure:
     if not panels:
         raise InputError("there is nothing to draw of this verdict: it has neither H(z) nor a motion")
     rows = (len(panels) + 1) // 2
-    figure = new_figure(11.0, 4.4 * rows + 0.7)
-    grid = figure.add_gridspec(rows, 2)
+    heights = [_HIGH if _witness in panels[2 * row : 2 * row + 2] else _LOW for row in range(rows)]
+    if panels[-1] is _scene and len(panels) % 2:
+        heights[-1] = min(_HIGH, size_of(cast("Scene", scene_of(verdict)))[1])
+    figure = new_figure(height=sum(heights) + 0.5)
+    grid = figure.add_gridspec(rows, 2, height_ratios=heights)
     for k, draw in enumerate(panels):
         last_alone = k == len(panels) - 1 and k % 2 == 0
         draw(figure, grid[k // 2, :] if last_alone else grid[k // 2, k % 2], verdict)
     text = f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"
     page_heading(figure, text, color=OUTCOME[verdict.outcome])
-    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
+    figure.set_layout_engine("constrained", w_pad=0.05, h_pad=0.05, hspace=0.05, wspace=0.03)
     return figure
 
 
@@ -154,7 +160,7 @@ def limit_figure(bracket: Bracket) -> Figure:
     """
     if bracket.storage is None and bracket.witness is None:
         raise InputError("there is neither a storage function nor a motion to draw")
-    figure = new_figure(11.0, 5.0)
+    figure = new_figure(height=4.6)
     sides = [
         *([_proved] if bracket.storage is not None else []),
         *([_refuted] if bracket.witness is not None else []),
@@ -163,7 +169,7 @@ def limit_figure(bracket: Bracket) -> Figure:
     for k, draw in enumerate(sides):
         draw(figure, grid[k], bracket)
     page_heading(figure, bracket.describe())
-    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
+    figure.set_layout_engine("constrained", w_pad=0.05, h_pad=0.05, hspace=0.05, wspace=0.03)
     return figure
 
 

@@ -15,7 +15,19 @@ from numpy.typing import NDArray
 
 from zwidth.model.scene import Element, Scene
 from zwidth.model.scene.element import GROUND
-from zwidth.show.plots.style import BLACK, BLUE, GREEN, GREY, LOOK, ORANGE, PURPLE, RED, new_figure, verbatim
+from zwidth.show.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    LOOK,
+    ORANGE,
+    PURPLE,
+    RED,
+    SMALL,
+    new_figure,
+    verbatim,
+)
 
 Array = NDArray[np.float64]
 
@@ -34,12 +46,15 @@ def plot_scene(scene: Scene, motion: str = "linear") -> Figure:
     motion
         "linear" or "rotary", for the units.
     """
-    places = placed(scene)
-    wide = max(x for x, _ in places.values())
-    high = max(y for _, y in places.values()) - min(y for _, y in places.values())
-    figure = new_figure(min(14.0, 2.5 + 1.9 * wide), min(10.0, 2.6 + 1.6 * high))
+    figure = new_figure(*size_of(scene))
     draw_scene(figure.add_subplot(), scene, motion)
     return figure
+
+
+def size_of(scene: Scene) -> tuple[float, float]:
+    """Width and height of its drawing [inch]."""
+    x, y = zip(*placed(scene).values(), strict=True)
+    return min(14.0, 2.5 + 1.9 * max(x)), min(10.0, 2.6 + 1.6 * (max(y) - min(y)))
 
 
 def draw_scene(axes: Axes, scene: Scene, motion: str = "linear") -> None:
@@ -76,7 +91,7 @@ def draw_scene(axes: Axes, scene: Scene, motion: str = "linear") -> None:
         held = node == scene.port
         axes.text(
             x, y, text if labelled or held else "", ha="center", va="center",
-            fontsize=8, color=BLACK, zorder=5,
+            fontsize=SMALL, color=BLACK, zorder=5,
             bbox={
                 "boxstyle": "square,pad=0.35" if bodies else "round,pad=0.15",
                 "fc": "#dbe9f4" if bodies else "white",
@@ -85,7 +100,7 @@ def draw_scene(axes: Axes, scene: Scene, motion: str = "linear") -> None:
         )  # fmt: skip
     axes.set_axis_off()
     axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.08)
+    axes.margins(0.15)
 
 
 def placed(scene: Scene) -> dict[str, tuple[float, float]]:
@@ -125,7 +140,7 @@ def _ends(
 ) -> tuple[Array, Array, list[Array]]:
     """Two points, and the leads to them; elements between the same nodes stand beside each other."""
     first, second = element.nodes
-    aside = (0.5 if GROUND in element.nodes else 0.3) * (turn - (many - 1) / 2)
+    aside = (0.5 if GROUND in element.nodes else 0.45) * (turn - (many - 1) / 2)
     if GROUND in (first, second):
         x, y = places[second if first == GROUND else first]
         begin = np.array([x + aside, y - 0.2])
@@ -209,8 +224,9 @@ def _name(axes: Axes, element: Element, begin: Array, end: Array, motion: str) -
     x, y = (begin + end) / 2
     upright = abs(end[0] - begin[0]) < abs(end[1] - begin[1])
     axes.annotate(
-        _number(element, motion).replace(", ", "\n"), (x, y), (13, 0) if upright else (0, 14),
+        _number(element, motion).replace(", ", "\n"),
+        (x + 0.12, y) if upright else (x, y + 0.11), (2, 0) if upright else (0, 1),
         textcoords="offset points", ha="left" if upright else "center", va="center" if upright else "bottom",
-        fontsize=7, color=_COLOUR[element.symbol], zorder=4,
+        fontsize=SMALL, color=_COLOUR[element.symbol], zorder=4,
         bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.85},
     )  # fmt: skip

@@ -18,17 +18,23 @@ from zwidth.show.plots.style import (
     BLUE,
     GREY,
     LOOK,
-    ORANGE,
     OUTCOME,
+    PURPLE,
     RED,
+    SMALL,
     heading,
     label,
+    legend,
+    legend_of_all,
     new_figure,
     number,
     page_heading,
     scale,
+    shown_name,
     verbatim,
+    with_unit,
 )
+from zwidth.show.plots.traces import ARMS
 from zwidth.showing import printable
 
 _SHOWN = 0.12
@@ -59,24 +65,28 @@ def laws_figure(comparison: Any) -> Figure:
     """
     scores = comparison.scores
     names = [str(name) for name in scores["law"].values]
-    figure = new_figure(10.5, 0.29 * len(names) + 1.7)
+    figure = new_figure(height=0.25 * len(names) + 1.9)
     columns = figure.subplots(1, 4, sharey=True, width_ratios=(1.0, 1.0, 1.0, 1.7))
     felt, given, worst, taps = columns
     _stiffness(felt, scores, float(comparison.environment.stiffness))
     touched = np.maximum(scores["generated_energy"].values, scores["dowel_energy"].values)
-    _energy(given, scores, touched, "most energy given out\nin a touch [mJ]")
-    _energy(worst, scores, scores["gain"].values, "taken out by the worst\nhand in a round [mJ]")
+    _energy(given, scores, touched, with_unit("most energy\ngiven out in\na touch", "mJ"))
+    _energy(worst, scores, scores["gain"].values, with_unit("taken out by\nthe worst hand\nin a round", "mJ"))
     _taps(taps, comparison, names)
     for axes in columns:
         axes.tick_params(axis="y", length=0, labelcolor=BLACK)
         axes.spines["left"].set_visible(False)
     felt.set_yticks(range(len(names)), [verbatim(name) for name in names])
     felt.set_ylim(len(names) - 0.4, -0.9)
+    seen = set(scores["status"].values.tolist())
     handles = [
         felt.plot([], [], mark, color=OUTCOME[status], label=_LABELS.get(status, status))[0]
         for status, mark in _MARKS.items()
+        if status in seen
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    legend_of_all(figure, handles)
+    motion = comparison.device.motion
+    page_heading(figure, f"{shown_name(comparison.device)}: {comparison.environment.describe(motion)}")
     return figure
 
 
@@ -84,10 +94,13 @@ def _stiffness(axes: Axes, scores: Any, wanted: float) -> None:
     factor, unit = scale([wanted], scores["static_stiffness"].attrs["units"])
     felt, wanted = factor * scores["static_stiffness"].values, factor * wanted
     axes.axvline(wanted, color=GREY, lw=0.8, ls=":")
-    axes.annotate("wanted", (wanted, 1.0), xycoords=("data", "axes fraction"), ha="center", fontsize=7.5)
+    axes.annotate(
+        "wanted", (wanted, 1.0), xycoords=("data", "axes fraction"), ha="center", fontsize=SMALL, color=GREY
+    )
     _dots(axes, scores, felt, 0.0)
     axes.set_xlim(0, 1.15 * max(wanted, np.nanmax(felt)))
-    axes.set_xlabel(f"stiffness felt\nat rest [{unit}]")
+    axes.locator_params(axis="x", nbins=3)
+    axes.set_xlabel(with_unit("stiffness felt\nat rest", unit))
 
 
 def _energy(axes: Axes, scores: Any, joules: NDArray[np.float64], label: str) -> None:
@@ -96,7 +109,7 @@ def _energy(axes: Axes, scores: Any, joules: NDArray[np.float64], label: str) ->
     _dots(axes, scores, energy, _FOOT)
     axes.set_xlim(_FOOT / 2, 3 * max(float(energy.max()), 1.0))
     axes.minorticks_off()
-    ticks = 10.0 ** np.arange(-3, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1, 2)
+    ticks = 10.0 ** np.arange(-3, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1, 3)
     axes.set_xticks(ticks, [_tick(tick) for tick in ticks])
     axes.set_xlabel(label)
 
@@ -132,11 +145,14 @@ def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
                 f"{force.max() * newton:.3g} N",
                 (_SHOWN * 1e3, row - 0.1),
                 ha="right",
-                fontsize=7.5,
+                fontsize=SMALL,
                 color=GREY,
             )
-    axes.set_xlabel(f"time after contact [ms];\nforces, {_ROW * newton:.3g} N the median of peaks")
-    axes.annotate("under a fast finger", (0, 1.0), xycoords="axes fraction", fontsize=7.5)
+    axes.set_xlabel(with_unit("time after contact", "ms"))
+    axes.annotate(
+        f"force under a fast finger;\n{_ROW * newton:.3g} N the median of peaks", (0, 1.0),
+        xycoords="axes fraction", fontsize=SMALL,
+    )  # fmt: skip
 
 
 _LINK_FOOT = 1e-6
@@ -157,7 +173,7 @@ def plot_links(comparison: Any) -> Figure:
     comparison
         A `zwidth.links.LinkComparison`, what `zwidth.links.compare` gives.
     """
-    figure = new_figure(9.6, 0.75 * comparison.scores.sizes["port"] + 1.5)
+    figure = new_figure(height=0.8 * comparison.scores.sizes["port"] + 1.5)
     draw_links(figure, comparison)
     return figure
 
@@ -173,15 +189,20 @@ def draw_links(figure: Figure, comparison: Any) -> None:
         paths, energy = figure.add_subplot(grid[row, 0]), figure.add_subplot(grid[row, 1])
         _paths(paths, trace, factor)
         _link_energy(energy, trace)
-        paths.set_title(name, fontsize=8.5, pad=2)
+        paths.set_ylabel(with_unit("x", unit), fontsize=SMALL)
+        energy.set_ylabel(with_unit("W", "mJ"), fontsize=SMALL)
+        paths.set_title(name, fontsize=SMALL, pad=2)
         last = row == len(names) - 1
         for axes in (paths, energy):
             axes.set_xticks([0, 1, 2, 3], ["0", "1", "2", "3"] if last else [])
         if last:
-            paths.set_xlabel(f"time [s]; positions [{unit}],\nleader black, follower blue")
-            energy.set_xlabel("time [s]; put in by both\nhands [mJ], below 0 red")
+            paths.set_xlabel("time t [s]")
+            energy.set_xlabel("time t [s]")
+        if row == 0:
+            drawn = [*paths.lines[:2], energy.lines[0]]
     _worst(worst, comparison.scores, names)
-    page_heading(figure, printable(comparison.schedule.describe()), 10)
+    legend_of_all(figure, [*drawn, *worst.get_legend_handles_labels()[0]])
+    page_heading(figure, printable(comparison.schedule.describe()))
 
 
 def _length(comparison: Any) -> tuple[float, str]:
@@ -193,15 +214,16 @@ def _paths(axes: Axes, trace: Any, factor: float) -> None:
     time = trace["time"].values
     leader, follower = trace["position"].values * factor
     most = _BEYOND * np.abs(leader).max()
-    axes.plot(time, leader, color=BLACK, lw=1.0)
-    axes.plot(time, np.clip(follower, -most, most), color=BLUE, lw=1.2)
+    for path, (name, (colour, line)) in zip((leader, follower), ARMS.items(), strict=True):
+        axes.plot(
+            time, np.clip(path, -most, most), color=colour, ls=line, lw=1.2, label=f"position x of the {name}"
+        )
     axes.axhline(0, color=_GUIDE, lw=0.6, zorder=0)
 
 
 def _link_energy(axes: Axes, trace: Any) -> None:
     time, work = trace["time"].values, 1e3 * trace["hand_work"].values.sum(axis=0)
-    axes.plot(time, work, color=ORANGE, lw=1.2)
-    axes.plot(time, np.where(work < 0, work, np.nan), color=RED, lw=1.2)
+    axes.plot(time, work, color=PURPLE, lw=1.2, label="put in by both hands; below 0, taken out")
     axes.axhline(0, color=GREY, lw=0.6, zorder=0)
 
 
@@ -217,13 +239,12 @@ def _worst(axes: Axes, scores: Any, names: list[str]) -> None:
         axes.plot(value, row, _MARKS[status], color=OUTCOME[status], ms=7, mew=0, clip_on=False, label=text)
     axes.set_xscale("log")
     axes.set_xlim(_LINK_FOOT, _LINK_MOST)
-    axes.set_xticks([1e-6, 1e-3, 1.0, 1e3], ["≤1e−6", "1e−3", "1", "1000"])
+    axes.set_xticks([1e-6, 1e-3, 1.0, 1e3], ["≤10⁻⁶", "0.001", "1", "1000"])
     axes.minorticks_off()
     axes.set_ylim(len(names) - 0.5, -0.5)
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
-    axes.set_xlabel("taken by the worst hands tried [J]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12))
+    axes.set_xlabel(with_unit("taken by the\nworst hands tried", "J"))
 
 
 # The real part of a port against frequency, and the index it does not fall below.
@@ -245,7 +266,7 @@ def indices(found: PassivityIndices) -> Figure:
     found
         What `zwidth.ports.passivity_indices` returned.
     """
-    figure = new_figure(8.6, 3.6)
+    figure = new_figure(height=3.8)
     left, right = figure.subplots(1, 2)
     draw_index(left, found.input)
     draw_index(right, found.output)
@@ -256,26 +277,29 @@ def draw_index(axes: Axes, index: PassivityIndex) -> None:
     """One of them on given axes."""
     several = index.port.axes > 1
     symbol, name = _NAMES[index.name][0], _NAMES[index.name][1 + several]
-    heading(axes, f"{index.name} index: {_title(index, symbol)}")
+    title = f"{index.name} index: {_title(index, symbol)}"
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(name)
     if index.found is None:
+        heading(axes, title)
         return
     frequencies = _frequencies(index)
     values, *others = index.curves(list(frequencies))
-    for other in others:
-        axes.plot(frequencies, other, color=GREY, lw=0.9)
-    axes.plot(frequencies, values, color=BLUE)
+    for n, other in enumerate(others):
+        axes.plot(frequencies, other, color=GREY, lw=0.9, label=None if n else "the others")
+    axes.plot(frequencies, values, color=BLUE, label="the least" if others else "real part")
     axes.axhline(0, color=GREY, lw=0.6)
     axes.set_xscale("log" if index.port.time == "continuous" else "linear")
     axes.set_xlim(frequencies[0], frequencies[-1])
     _limit_height(axes, values, index.value)
     if isfinite(index.value):
-        axes.axhline(index.value, color="black", ls="--", lw=1.2)
+        axes.axhline(index.value, color="black", ls="--", lw=1.2, label=f"index {symbol}")
     at = index.frequency
     if at is not None:
         at = min(max(at, frequencies[0]), frequencies[-1])
-        axes.plot([at], [index.value], "o", color=RED, ms=6, clip_on=False, zorder=5)
+        axes.plot([at], [index.value], "o", color=RED, ms=6, clip_on=False, zorder=5, label="where it is")
+    legend(axes)
+    heading(axes, title)
 
 
 def _title(index: PassivityIndex, symbol: str) -> str:

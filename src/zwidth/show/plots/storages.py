@@ -28,9 +28,12 @@ from zwidth.show.plots.style import (
     SKY,
     heading,
     label,
+    legend,
     new_figure,
     number,
     scale,
+    symbol,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -92,11 +95,12 @@ def draw_storage(axes: Axes, found: StorageFunction) -> None:
         axes.xaxis.set_minor_locator(FixedLocator((metres * resolution * edges).tolist()))
     axes.set_xlim(max(x[0], -_OUTSIDE * x[-1]), x[-1])
     axes.set_ylim(0, None)
-    axes.set_xlabel(f"{label('position', found.motion, unit=length_unit)}, a tick for each count")
-    axes.set_ylabel(f"can be taken out, at most V [{energy_unit}]")
+    words = f"position {symbol('position')}{', a tick for each count' if len(edges) <= _EDGES else ''}"
+    axes.set_xlabel(with_unit(words, length_unit))
+    axes.set_ylabel(with_unit("can be taken out, at most V", energy_unit))
     most = f"{number(float(joules * high.max()))} {energy_unit}"
+    legend(axes)
     heading(axes, f"never more than {most} can be taken out", color=OUTCOME["passive"])
-    axes.legend(loc="upper left")
 
 
 # What was measured of a port against frequency, with its error, beside what no passive system has.
@@ -117,7 +121,7 @@ def sample_table_figure(found: SampleTable) -> Figure:
     found
         What `zwidth.ports.response_table` or `scattering_table` returned.
     """
-    figure = new_figure(6.8, 4.4)
+    figure = new_figure(height=4.4)
     draw_sample_table(figure.subplots(), found)
     return figure
 
@@ -144,12 +148,12 @@ def draw_sample_table(axes: Axes, found: SampleTable) -> None:
     axes.set_xscale("log" if f[0] > 0 and f[-1] > _LOGARITHMIC * f[0] else "linear")
     axes.set_ylim(low, high)
     axes.set_xlabel(label("frequency"))
-    axes.set_ylabel(f"{found.NAMES[found.ports > 1]} [{found.UNIT}]")
+    axes.set_ylabel(with_unit(found.NAMES[found.ports > 1], found.UNIT))
+    legend(axes)
     count = int(broken.sum())
     heading(
         axes, f"{count} of {len(f)} samples violate" if count else f"no violation shown at {len(f)} samples"
     )
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
 
 
 def _draw_bands(axes: Axes, found: SampleTable) -> None:

@@ -1,18 +1,18 @@
-"""How every picture looks: colours, sizes, axis labels with units.
+"""How every picture looks: colours, sizes, axis labels with units, where titles and legends stand.
 
-Colours are those of Okabe & Ito (2008), told apart with any colour vision;
-no meaning hangs on a colour alone.
+Colours are those of Okabe & Ito (2008), told apart with any colour vision; no meaning hangs on a colour
+alone.  A page of the docs is as wide as `WIDEST`: what is no wider keeps its letters at the size they have.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from io import BytesIO
 from math import ceil, floor, isfinite, log10
 from pathlib import Path
 from re import sub
 from textwrap import fill
-from typing import Any
+from typing import Any, cast
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -37,6 +37,12 @@ GREEN, ORANGE, RED, PURPLE = "#009E73", "#E69F00", "#D55E00", "#CC79A7"
 OUTCOME = {outcome: told.colour for outcome, told in TOLD.items()}
 """Colour of each outcome; the word always stands beside it."""
 
+WIDEST = 7.2
+"""Of a picture [inch]: 700 points of a screen, as wide as a page of the docs."""
+
+SMALL = 8.0
+"""The smallest letters [point]."""
+
 LOOK: Any = {
     "figure.facecolor": "white",  # a page of its own, also where everything around it is dark
     "savefig.facecolor": "auto",
@@ -48,6 +54,7 @@ LOOK: Any = {
     "xtick.color": BLACK,
     "ytick.color": BLACK,
     "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-9, 10),  # numbers as people write them, no 1e6 beside the axis
     "font.size": 9,
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
@@ -55,20 +62,27 @@ LOOK: Any = {
     "axes.spines.right": False,
     "axes.labelcolor": BLACK,
     "legend.frameon": False,
-    "legend.fontsize": 8.5,
+    "legend.fontsize": SMALL,
+    "legend.handlelength": 2.4,
     "lines.linewidth": 1.8,
     "xtick.labelsize": 8.5,
     "ytick.labelsize": 8.5,
 }
 """Settings under which every picture is drawn."""
 
-_LONGEST = 36
+_BESIDE = 0.7
+"""What numbers and label of the upright axis take of the width of its place [inch]."""
+
+_HANDLE = 0.4
+"""What the mark takes of an entry of a legend [inch]."""
+
+_LONGEST = 80
 """Characters of a device's name that are drawn."""
 
 _SCALED = ("m", "s", "J", "N", "rad", "N*m")
 
 
-def new_figure(width: float = 6.4, height: float = 4.0) -> Figure:
+def new_figure(width: float = WIDEST, height: float = 4.0) -> Figure:
     """An empty figure that belongs to no window; sizes in inches."""
     return Figure(figsize=(width, height), layout="constrained")
 
@@ -77,8 +91,26 @@ def label(name: str, motion: str = "linear", text: str | None = None, unit: str 
     """An axis label from the glossary: name, symbol, unit."""
     quantity = GLOSSARY[name]
     words = in_words(quantity.name) if text is None else text
-    shown = unit_text(spoken(quantity.unit_for(motion))[1] if unit is None else unit) or "1"
-    return f"{words} {symbol(name)} [{shown}]".strip()
+    return with_unit(
+        f"{words} {symbol(name)}".strip(), spoken(quantity.unit_for(motion))[1] if unit is None else unit
+    )
+
+
+def with_unit(words: str, unit: str) -> str:
+    """What every axis says: "energy out [mJ]"."""
+    return f"{words} [{unit_text(unit) or '1'}]"
+
+
+def axis(
+    values: Iterable[float], name: str, motion: str = "linear", text: str | None = None
+) -> tuple[float, str]:
+    """(factor, label) of an axis on which these values in SI are read: (1000, "position x [mm]").
+
+    `text` stands in the place of name and symbol; "time" is no quantity of the glossary, and has one too.
+    """
+    factor, unit = scale(values, "s" if name == "time" else GLOSSARY[name].unit_for(motion))
+    words = "time t" if name == "time" else f"{in_words(name)} {symbol(name)}"
+    return factor, with_unit(words if text is None else text, unit)
 
 
 def symbol(name: str) -> str:
@@ -136,15 +168,48 @@ def verbatim(text: str) -> str:
     return printable(text).replace("$", r"\$")
 
 
+def legend(axes: Axes, handles: Sequence[Any] | None = None) -> None:
+    """Above the axes, so that no curve runs through it, in as many columns as the width allows.
+
+    It comes before `heading`, which stands above it.
+    """
+    handles = axes.get_legend_handles_labels()[0] if handles is None else handles
+    words = [broken(str(one.get_label()), room(axes) - _HANDLE, SMALL) for one in handles]
+    for columns in range(len(handles), 0, -1):
+        drawn = axes.legend(
+            handles, words, ncols=columns, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.2,
+            columnspacing=1.2,
+        )  # fmt: skip
+        if drawn.get_window_extent().width <= room(axes) * cast("Figure", axes.figure).dpi:
+            return
+
+
+def legend_of_all(figure: Figure, handles: Sequence[Any]) -> None:
+    """One legend for all axes, below them, in as many columns as the width allows."""
+    for columns in range(len(handles), 0, -1):
+        drawn = figure.legend(handles=handles, ncols=columns, loc="outside lower left", columnspacing=1.2)
+        if columns == 1 or drawn.get_window_extent().width <= 0.97 * figure.bbox.width:
+            return
+        drawn.remove()
+
+
+def room(axes: Axes) -> float:
+    """Width of the axes within their place in the figure [inch]."""
+    place, figure = axes.get_subplotspec(), cast("Figure", axes.figure)
+    if place is None:
+        return float(axes.get_position().width * figure.get_figwidth())
+    share = place.get_position(figure).width / (figure.subplotpars.right - figure.subplotpars.left)
+    return float(share * figure.get_figwidth() - _BESIDE)
+
+
 def heading(axes: Axes, text: str, size: float = 10.0, **style: Any) -> None:
-    """A title that ends where its place in the figure does, on as many lines as that takes."""
-    figure: Any = axes.figure
-    place = axes.get_subplotspec()
-    box = axes.get_position() if place is None else place.get_position(figure)
-    axes.set_title(broken(text, box.width * figure.bbox.width / figure.dpi, size), fontsize=size, **style)
+    """A title above the legend, as wide as the axes at most, on as many lines as that takes."""
+    drawn = axes.get_legend()
+    above = 0 if drawn is None else 72 * drawn.get_window_extent().height / cast("Figure", axes.figure).dpi
+    axes.set_title(broken(text, room(axes), size), fontsize=size, pad=6 + above, **style)
 
 
-def page_heading(figure: Figure, text: str, size: float = 11.0, color: str = BLACK) -> None:
+def page_heading(figure: Figure, text: str, size: float = 10.5, color: str = BLACK) -> None:
     """A title over all of a figure, as it is written, on as many lines as the width takes."""
     lines = broken(text, 0.97 * figure.get_figwidth(), size)
     figure.suptitle(lines, x=0.01, ha="left", fontsize=size, color=color, parse_math=False)
@@ -178,8 +243,8 @@ def as_written(text: object) -> str:
 def note(axes: Axes, text: str) -> None:
     """A small line under the picture: what is left out, and why."""
     axes.annotate(
-        text, (0, 0), (0, -34), xycoords="axes fraction", textcoords="offset points",
-        va="top", fontsize=7.5, color=GREY,
+        broken(text, room(axes), SMALL), (0, 0), (0, -34), xycoords="axes fraction",
+        textcoords="offset points", va="top", fontsize=SMALL, color=GREY,
     )  # fmt: skip
 
 

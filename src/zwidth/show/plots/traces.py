@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.loop.energy import PairLedger, ledger
-from zwidth.loop.trace import UNITS
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -23,12 +22,17 @@ from zwidth.show.plots.style import (
     RED,
     SKY,
     as_written,
+    axis,
     heading,
+    legend,
+    legend_of_all,
     new_figure,
     number,
+    page_heading,
     scale,
     verbatim,
 )
+from zwidth.showing import printable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,47 +46,48 @@ _MOST = 4000
 _STAIRS = 400
 """Samples up to which the encoder's steps are drawn."""
 
-_COMPARED: dict[str, Callable[[xr.Dataset], Array]] = {
-    "position": lambda t: t["position"].values,
-    "actuator force": lambda t: t["actuator_force"].values,
-    "energy got out by the hand": lambda t: t["hand_work"].values[0] - t["hand_work"].values,
+_COMPARED: dict[str, tuple[str | None, Callable[[xr.Dataset], Array]]] = {
+    "position": (None, lambda t: t["position"].values),
+    "force": (None, lambda t: t["actuator_force"].values),
+    "energy": ("energy out", lambda t: t["hand_work"].values[0] - t["hand_work"].values),
 }
 
-_COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK, GREY)
+_COLOURS = (BLUE, ORANGE, BLACK, GREEN, PURPLE, RED, SKY, GREY)
+_LINES = ("-", "-", "--", "--", "-.", "-.", ":", ":")
+"""Of a trace; two that follow each other differ in grey, and those further apart in their dashes."""
 
 
 @rc_context(LOOK)
 def trace_figure(trace: xr.Dataset) -> Figure:
     """Position, forces and energy of one trace, one above the other."""
-    figure = new_figure(8.4, 6.6)
-    above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1.15, 1, 1))
+    figure = new_figure(height=7.0)
+    above, middle, below = figure.subplots(3, 1, sharex=True)
     draw_position(above, trace)
     draw_forces(middle, trace)
     draw_energies(below, trace)
-    heading(above, _title(trace))
-    below.set_xlabel(f"time [{_time(trace)[1]}]")
+    page_heading(figure, _title(trace))
+    below.set_xlabel(_time(trace)[1])
     return figure
 
 
 @rc_context(LOOK)
 def comparison_figure(traces: Mapping[str, xr.Dataset]) -> Figure:
     """Position, actuator force and the energy that the hand got out, of several traces."""
-    figure = new_figure(7.2, 6.6 + 0.18 * len(traces))
+    figure = new_figure(height=6.6 + 0.18 * len(traces))
     rows = figure.subplots(3, 1, sharex=True)
     motion = str(next(iter(traces.values())).attrs["motion"])
-    units = (UNITS[motion][0], UNITS[motion][2], "J")
     longest = max(float(trace["time"].values[-1]) for trace in traces.values())
-    seconds, unit = scale([longest], "s")
-    for axes, (name, values), base in zip(rows, _COMPARED.items(), units, strict=True):
-        factor, shown = scale([float(np.abs(values(t)).max()) for t in traces.values()], base)
-        for colour, (label, trace) in zip(_cycle(len(traces)), traces.items(), strict=True):
+    seconds, text = axis([longest], "time")
+    rows[-1].set_xlabel(text)
+    for axes, (name, (words, values)) in zip(rows, _COMPARED.items(), strict=True):
+        factor, text = axis([float(np.abs(values(t)).max()) for t in traces.values()], name, motion, words)
+        for place, (label, trace) in enumerate(traces.items()):
             x, y = thinned(trace["time"].values * seconds, values(trace) * factor)
-            axes.plot(x, y, color=colour, label=verbatim(label), lw=1.3)
+            colour, line = _COLOURS[place % len(_COLOURS)], _LINES[place % len(_LINES)]
+            axes.plot(x, y, color=colour, ls=line, label=verbatim(label), lw=1.3)
         axes.axhline(0, color=GREY, lw=0.8)
-        axes.set_ylabel(f"{name}\n[{shown}]")
-    rows[-1].set_xlabel(f"time [{unit}]")
-    handles, labels = rows[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=1)
+        axes.set_ylabel(text)
+    legend_of_all(figure, rows[0].get_legend_handles_labels()[0])
     return figure
 
 
@@ -90,7 +95,7 @@ def draw_position(axes: Axes, trace: xr.Dataset) -> None:
     """Position, what the encoder read, what the muscles wanted; the wall is shaded."""
     time = _time(trace)[0]
     x = trace["position"].values
-    factor, unit = scale([float(np.abs(x).max())], UNITS[str(trace.attrs["motion"])][0])
+    factor, text = axis([float(np.abs(x).max())], "position", str(trace.attrs["motion"]))
     wanted = trace["anchor_position"].values if "anchor_position" in trace else x
     if wanted is not x and np.abs(wanted).max() < 5 * np.abs(x).max():
         curve = thinned(time, wanted * factor)
@@ -100,15 +105,20 @@ def draw_position(axes: Axes, trace: xr.Dataset) -> None:
         axes.step(time, read, where="post", color=SKY, lw=1, label="read by the encoder")
     axes.plot(*thinned(time, x * factor), color=BLUE, label="position")
     if "motor_position" in trace:
-        axes.plot(*thinned(time, trace["motor_position"].values * factor), color=GREEN, lw=1, label="motor")
+        motor = thinned(time, trace["motor_position"].values * factor)
+        axes.plot(*motor, color=BLACK, ls=":", lw=1, label="motor")
+    shade_wall(axes)
+    axes.set_ylabel(text)
+    legend(axes)
+
+
+def shade_wall(axes: Axes) -> None:
+    """Positions inside it, as far as they are drawn."""
     low, high = axes.get_ylim()
     if high > 0:
-        axes.axhspan(0, high, color=GREY, alpha=0.12, lw=0)
+        axes.axhspan(0, high, color=GREY, alpha=0.15, lw=0, label="in the wall")
         axes.set_ylim(low, high)
     axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"position [{unit}]\n(wall shaded)")
-    if len(axes.get_lines()) > 2:
-        _legend(axes)
 
 
 def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
@@ -116,45 +126,40 @@ def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
     time = _time(trace)[0]
     hand, actuator = trace["hand_force"].values, trace["actuator_force"].values
     largest = max(float(np.abs(hand).max()), float(np.abs(actuator).max()))
-    factor, unit = scale([largest], UNITS[str(trace.attrs["motion"])][2])
-    axes.plot(*thinned(time, hand * factor), color=ORANGE, lw=1.2, label="hand, into the wall")
+    factor, text = axis([largest], "force", str(trace.attrs["motion"]))
+    axes.plot(*thinned(time, hand * factor), color=BLACK, ls="--", lw=1.2, label="hand, into the wall")
     steps: Any = {"drawstyle": "steps-post"} if time.size <= _MOST else {}
     axes.plot(*thinned(time, actuator * factor), color=PURPLE, lw=1.2, label="actuator, out of it", **steps)
     axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"force [{unit}]")
-    _legend(axes)
+    axes.set_ylabel(text)
+    legend(axes)
 
 
 def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
     """What the hand and the actuator put in, and what friction took; below 0 the hand has got out energy."""
     time = _time(trace)[0]
     names = {
-        "hand_work": (ORANGE, "from the hand"),
-        "actuator_work": (PURPLE, "from the actuator"),
-        "loss": (GREEN, "lost in friction"),
-        "kinetic_energy": (BLUE, "kinetic"),
+        "hand_work": (BLACK, "--", "from the hand"),
+        "actuator_work": (PURPLE, "-", "from the actuator"),
+        "loss": (GREEN, "-.", "lost in friction"),
+        "kinetic_energy": (BLUE, "-", "kinetic"),
     }
     if "transmission_energy" in trace:
-        names["transmission_energy"] = (GREY, "in the transmission")
+        names["transmission_energy"] = (GREY, ":", "in the transmission")
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
     lost = lost + trace["transmission_loss"].values if "transmission_loss" in trace else lost
     curves = {name: lost if name == "loss" else trace[name].values for name in names}
-    factor, unit = scale([max(float(np.abs(c).max()) for c in curves.values())], "J")
-    for name, (colour, text) in names.items():
-        axes.plot(*thinned(time, curves[name] * factor), color=colour, lw=1.3, label=text)
+    factor, text = axis([max(float(np.abs(c).max()) for c in curves.values())], "energy")
+    axes.set_ylabel(text)
+    for name, (colour, line, text) in names.items():
+        axes.plot(*thinned(time, curves[name] * factor), color=colour, ls=line, lw=1.3, label=text)
     axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"energy [{unit}]")
-    _legend(axes)
+    legend(axes)
     book = ledger(trace)
     if book.active:
         out = book.extracted
         f, u = scale([out], "J")
         heading(axes, f"the hand got out {number(out * f)} {u}: this loop is active", color=RED)
-
-
-def _legend(axes: Axes) -> None:
-    """Beside the axes: curves that swing leave no room inside."""
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:
@@ -173,20 +178,19 @@ def thinned(x: Array, y: Array) -> tuple[Array, Array]:
 
 def _time(trace: xr.Dataset) -> tuple[Array, str]:
     time = trace["time"].values
-    factor, unit = scale([float(time[-1])], "s")
-    return time * factor, unit
+    factor, text = axis([float(time[-1])], "time")
+    return time * factor, text
 
 
 def _title(trace: xr.Dataset) -> str:
     about = trace.attrs
-    return verbatim(f"{about['device']}, {as_written(about['environment'])}\n{as_written(about['operator'])}")
+    return printable(
+        f"{about['device']}, {as_written(about['environment'])}\n{as_written(about['operator'])}"
+    )
 
 
-def _cycle(count: int) -> list[str]:
-    return [_COLOURS[i % len(_COLOURS)] for i in range(count)]
-
-
-_ARM_COLOURS = {"leader": BLUE, "follower": ORANGE}
+ARMS = {"leader": (BLUE, "-"), "follower": (ORANGE, "--")}
+"""How each is drawn, wherever two are."""
 
 
 @rc_context(LOOK)
@@ -198,48 +202,48 @@ def pair_trace_figure(trace: xr.Dataset) -> Figure:
     trace
         What `zwidth.simulate` returned of a `zwidth.Pair`.
     """
-    figure = new_figure(8.4, 6.8)
-    above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1.15, 1, 1))
-    draw_both(above, trace, "position", "position")
-    draw_both(middle, trace, "hand_force", "force on the arm\nby what holds it")
+    figure = new_figure(height=7.4)
+    above, middle, below = figure.subplots(3, 1, sharex=True)
+    draw_both(above, trace, "position")
+    draw_both(middle, trace, "hand_force", "force of its holder")
     draw_pair_energies(below, trace)
     about = trace.attrs
     held = as_written(f"leader: {about['leader_holder']}\nfollower: {about['follower_holder']}")
-    heading(above, verbatim(f"{about['coupling']}\n{held}"))
-    below.set_xlabel(f"time [{scale([float(trace['time'].values[-1])], 's')[1]}]")
+    page_heading(figure, printable(f"{about['coupling']}\n{held}"))
+    below.set_xlabel(axis([float(trace["time"].values[-1])], "time")[1])
     return figure
 
 
-def draw_both(axes: Axes, trace: xr.Dataset, name: str, text: str) -> None:
+def draw_both(axes: Axes, trace: xr.Dataset, name: str, text: str | None = None) -> None:
     """One variable of both arms."""
-    time = _arm_time(trace)
+    time = _time(trace)[0]
     values = trace[name].values
-    unit = UNITS[str(trace.attrs["motion"])][0 if name == "position" else 2]
-    factor, shown = scale([float(np.abs(values).max())], unit)
-    for row, (arm, colour) in zip(values, _ARM_COLOURS.items(), strict=True):
-        axes.plot(*thinned(time, row * factor), color=colour, lw=1.3, label=arm)
+    quantity = "position" if name == "position" else "force"
+    factor, text = axis([float(np.abs(values).max())], quantity, str(trace.attrs["motion"]), text)
+    for row, (arm, (colour, line)) in zip(values, ARMS.items(), strict=True):
+        axes.plot(*thinned(time, row * factor), color=colour, ls=line, lw=1.3, label=arm)
     axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"{text} [{shown}]")
-    _legend(axes)
+    axes.set_ylabel(text)
+    legend(axes)
 
 
 def draw_pair_energies(axes: Axes, trace: xr.Dataset) -> None:
     """What both hands put in together, where it went; below 0 they have got energy out."""
-    time, book = _arm_time(trace), PairLedger(trace)
+    time, book = _time(trace)[0], PairLedger(trace)
     ratio = np.array([[1.0], [book.power_ratio]])
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
-    curves: dict[str, tuple[str, Array]] = {
-        "from both hands": (RED, book.hand_work),
-        "into the coupling": (PURPLE, book.coupling),
-        "lost in friction": (GREEN, (ratio * lost).sum(axis=0)),
-        "kinetic": (BLUE, (ratio * trace["kinetic_energy"].values).sum(axis=0)),
+    curves: dict[str, tuple[str, str, Array]] = {
+        "from both hands": (BLACK, "--", book.hand_work),
+        "into the coupling": (PURPLE, "-", book.coupling),
+        "lost in friction": (GREEN, "-.", (ratio * lost).sum(axis=0)),
+        "kinetic": (BLUE, "-", (ratio * trace["kinetic_energy"].values).sum(axis=0)),
     }
-    factor, unit = scale([max(float(np.abs(c).max()) for _, c in curves.values())], "J")
-    for text, (colour, curve) in curves.items():
-        axes.plot(*thinned(time, curve * factor), color=colour, lw=1.3, label=text)
+    factor, text = axis([max(float(np.abs(c).max()) for *_, c in curves.values())], "energy")
+    axes.set_ylabel(text)
+    for name, (colour, line, curve) in curves.items():
+        axes.plot(*thinned(time, curve * factor), color=colour, ls=line, lw=1.3, label=name)
     axes.axhline(0, color=GREY, lw=0.8)
-    axes.set_ylabel(f"energy [{unit}]")
-    _legend(axes)
+    legend(axes)
     if book.active:
         f, u = scale([book.extracted], "J")
         heading(
@@ -247,8 +251,3 @@ def draw_pair_energies(axes: Axes, trace: xr.Dataset) -> None:
             f"{number(book.extracted * f)} {u} came out beyond what was in it: this pair is active",
             color=RED,
         )
-
-
-def _arm_time(trace: xr.Dataset) -> Array:
-    time: Array = trace["time"].values
-    return time * scale([float(time[-1])], "s")[0]

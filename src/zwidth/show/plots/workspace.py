@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,10 +15,10 @@ from matplotlib.ticker import FixedLocator, FormatStrFormatter, MaxNLocator, Nul
 
 from zwidth.errors import InputError
 from zwidth.model.arms import DescribedArm
-from zwidth.model.arms.encoders import in_words
 from zwidth.model.arms.null_space import Loop, Shape, gain, shapes
 from zwidth.passivity.workspace import Workspace
-from zwidth.quantity.text import shown, unit_text
+from zwidth.quantity.spoken import spoken, spoken_data
+from zwidth.quantity.text import shown
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -29,22 +28,26 @@ from zwidth.show.plots.style import (
     ORANGE,
     OUTCOME,
     RED,
+    SMALL,
+    WIDEST,
     heading,
+    legend,
     new_figure,
     note,
     number,
     page_heading,
     verbatim,
+    with_unit,
 )
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from zwidth.passivity.workspace import NullSpace, PostureMap
 
 
 _ARROWS = 14
 """Marks of the worst direction along each side."""
-_LONGEST = 110
-"""Characters of the line below the map."""
 _LEAST_SPREAD = 1e-3
 """Of the largest value: what varies less is drawn as one colour."""
 
@@ -60,23 +63,21 @@ def workspace_figure(space: Workspace, variable: str | None = None) -> Figure:
     variable
         A name in `space.data`. Default "margin", of a wall in pose "margin_in_joints".
     """
-    figure = new_figure(6.4, 5.0)
-    axes = figure.add_subplot()
-    draw_workspace(axes, space, variable)
-    page_heading(figure, f"{space.arm.name}: {space.outcome}", color=OUTCOME[space.outcome])
-    figure.supxlabel(
-        shorten(_covers(space), _LONGEST, placeholder=" …"), x=0.01, ha="left", fontsize=8, color=GREY,
-        parse_math=False,
-    )  # fmt: skip
+    figure = new_figure(height=4.4)
+    draw_workspace(figure.add_subplot(), space, variable)
+    _fit(figure)
+    title = f"{space.arm.name}: {space.outcome}. {space.claim}"
+    page_heading(figure, title, color=OUTCOME[space.outcome])
     return figure
 
 
-def _covers(space: Workspace) -> str:
-    """How the arm is read and what the torque does, in a line."""
-    forces = f", wall forces up to {in_words(space.largest_forces)}" if space.largest_forces else ""
-    read = "read without steps" if space.encoder == "ideal" else "encoder steps counted"
-    follows = "follows the arm" if space.encoder == "ideal" else "follows the readings"
-    return f"{read}; torque {follows if space.torque == 'follows' else 'held over a period'}{forces}"
+def _fit(figure: Figure) -> None:
+    """As wide and as high as a map takes that has one scale along both axes."""
+    axes = figure.axes[0]
+    if axes.get_aspect() != "auto":
+        wide, high = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+        largest = min((WIDEST - 2.2) / wide, 4.5 / high)
+        figure.set_size_inches(max(4.8, 2.2 + largest * wide), 1.9 + largest * high)
 
 
 def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) -> None:
@@ -95,15 +96,16 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     variable = least if variable is None else variable
     if variable not in space.data:
         raise InputError(f"the map has no {variable!r}; it has {', '.join(map(str, space.data))}")
-    data = space.data[variable]
-    label = f"{variable.replace('_', ' ')} [{unit_text(data.attrs['units']) or '1'}]"
-    if data.ndim == 1:
-        _line(axes, space, data, label)
+    data = spoken_data(space.data)
+    drawn = data[variable]
+    label = with_unit(variable.replace("_", " "), drawn.attrs["units"])
+    if drawn.ndim == 1:
+        _line(axes, data, drawn, label)
         return
-    if data.ndim > 2:
+    if drawn.ndim > 2:
         raise InputError("a map of more than two joints cannot be drawn; take a slice of `data`")
-    across, up, names = _coordinates(space)
-    values = np.asarray(data.values, dtype=np.float64)
+    across, up, names = _coordinates(data)
+    values = np.asarray(drawn.values, dtype=np.float64)
     # The cells of a chain are bent: their colours run from middle to middle.
     shading: Any = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
     colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
@@ -121,25 +123,24 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     if names == ("x", "y"):
         axes.set_aspect("equal")
         if least == "margin":
-            _directions(axes, space, across, up)
+            _directions(axes, data, across, up)
             notes.append("strokes: the direction in which the margin is smallest")
     if notes:
         note(axes, "; ".join(notes))
-    axes.set_xlabel(_axis(space, names[0]))
-    axes.set_ylabel(_axis(space, names[1]))
+    axes.set_xlabel(_axis(data, names[0]))
+    axes.set_ylabel(_axis(data, names[1]))
 
 
-def _line(axes: Axes, space: Workspace, data: Any, label: str) -> None:
-    name = str(data.dims[0])
-    axes.plot(data[name], data.values, color=OUTCOME["passive"] if data.min() >= 0 else RED)
+def _line(axes: Axes, data: xr.Dataset, drawn: xr.DataArray, label: str) -> None:
+    name = str(drawn.dims[0])
+    axes.plot(data[name], drawn.values, color=OUTCOME["passive"] if drawn.min() >= 0 else RED)
     axes.axhline(0, color=GREY, linewidth=0.8)
-    axes.set_xlabel(_axis(space, name))
+    axes.set_xlabel(_axis(data, name))
     axes.set_ylabel(label)
 
 
-def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
+def _coordinates(data: xr.Dataset) -> tuple[Any, Any, tuple[str, str]]:
     """The plane of the hand where there is one, else that of the two joints."""
-    data = space.data
     if "x" in data.coords:
         return (*np.meshgrid(data["x"], data["y"], indexing="ij"), ("x", "y"))
     if "hand_x" in data.coords and "hand_z" not in data.coords:
@@ -156,19 +157,19 @@ def _colours(values: Any) -> dict[str, Any]:
     return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + max(_LEAST_SPREAD * high, 1e-300))}
 
 
-def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:
+def _directions(axes: Axes, data: xr.Dataset, across: Any, up: Any) -> None:
     step = tuple(slice(n // (2 * _ARROWS), None, max(1, n // _ARROWS)) for n in across.shape)
-    u, v = space.data["direction_x"].values[step], space.data["direction_y"].values[step]
+    u, v = data["direction_x"].values[step], data["direction_y"].values[step]
     axes.quiver(
         across[step], up[step], u, v, color=BLACK, alpha=0.5, pivot="mid", headwidth=0, headlength=0,
         headaxislength=0, scale=2.2 * _ARROWS, width=0.0025,
     )  # fmt: skip
 
 
-def _axis(space: Workspace, name: str) -> str:
+def _axis(data: xr.Dataset, name: str) -> str:
     if name in ("x", "y"):
-        return f"{name} [m]"
-    return f"joint {verbatim(name)} [{unit_text(space.data[name].attrs['units'])}]"
+        return with_unit(name, "m")
+    return with_unit(f"joint {verbatim(name)}", data[name].attrs["units"])
 
 
 Array = npt.NDArray[np.float64]
@@ -179,7 +180,7 @@ _SPAN = 1.8
 _FIRST = 0.02
 """The smallest size that is drawn [rad]."""
 _ROUND = 200
-_TICKS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
+_TICKS = [step * 10.0**power for power in range(-3, 3) for step in (1, 2, 5)]
 
 
 @rc_context(LOOK)
@@ -191,16 +192,15 @@ def null_space_figure(found: NullSpace) -> Figure:
     found
         What `zwidth.null_space` returned.
     """
-    figure = new_figure(8.0, 3.9)
-    left, right = figure.subplots(1, 2, width_ratios=(4, 5))
+    figure = new_figure(height=4.8)
     shape = _shape(found)
-    _draw_loop(left, found, shape)
+    *left, right = figure.subplots(1, 2 if shape else 1, squeeze=False)[0]
+    if shape is not None:
+        _draw_loop(left[0], found, shape)
     _draw_joules(right, found, shape)
-    arm = verbatim(found.question.arm.name)
     spring = shown(found.spring.stiffness, "N*m/rad")
-    page_heading(
-        figure, f"{arm}: null-space spring of {spring}, {found.outcome}", color=OUTCOME[found.outcome]
-    )
+    title = f"{found.question.arm.name}: null-space spring of {spring}, {found.outcome}. {found.claim}"
+    page_heading(figure, title, color=OUTCOME[found.outcome])
     return figure
 
 
@@ -216,16 +216,14 @@ def _shape(found: NullSpace) -> Shape | None:
     return next(iter(shapes(arm, spring)), None)  # type: ignore[arg-type]  # a chain or a description
 
 
-def _draw_loop(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
+def _draw_loop(axes: Axes, found: NullSpace, shape: Shape) -> None:
     rest = np.asarray(found.spring.rest)
-    if shape is None:
-        axes.set_axis_off()
-        return
+    factor, unit = spoken("rad")
     size = found.loop.reach(found.spring.rest) if found.loop is not None else _largest(found)
     swing = np.hypot(shape.cosine, shape.sine)
     first, second = sorted(np.argsort(swing)[-2:].tolist())
     joints = Loop(rest + size * shape.centre, size * shape.cosine, size * shape.sine, _ROUND).joints()
-    joints = np.vstack([joints, joints[:1]])
+    joints, rest = factor * np.vstack([joints, joints[:1]]), factor * rest
     colour, line = (RED, "-") if found.loop is not None else (GREY, ":")
     axes.plot(joints[:, first], joints[:, second], line, color=colour)
     if found.loop is not None:
@@ -237,17 +235,19 @@ def _draw_loop(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
             arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.4},
         )
     axes.plot(rest[first], rest[second], "+", color=BLACK, ms=9)
-    axes.annotate("rest", _pair(rest, first, second), xytext=(4, 4), textcoords="offset points", fontsize=8)
+    axes.annotate(
+        "rest", _pair(rest, first, second), xytext=(4, 4), textcoords="offset points", fontsize=SMALL
+    )
     names = [verbatim(name) for name in _names(found)]
-    axes.set_xlabel(f"{names[first]} [rad]")
-    axes.set_ylabel(f"{names[second]} [rad]")
+    axes.set_xlabel(with_unit(f"joint {names[first]}", unit))
+    axes.set_ylabel(with_unit(f"joint {names[second]}", unit))
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.15)
     axes.locator_params(nbins=5)
     told = "the loop, replayed" if found.loop is not None else "a loop that is first to gain, if larger"
     others = [i for i in np.argsort(-np.abs(shape.centre)) if i not in (first, second)]
-    away = [f"{names[i]} {number(round(size * shape.centre[i], 2))}" for i in others[:2]]
-    heading(axes, f"{told}; off its rest by {', '.join(away)} rad", size=8.5)
+    away = [f"{names[i]} {number(float(f'{factor * size * shape.centre[i]:.2g}'))}" for i in others[:2]]
+    heading(axes, f"{told}; off its rest by {', '.join(away)} {unit}")
 
 
 def _pair(joints: Array, first: int, second: int) -> tuple[float, float]:
@@ -271,43 +271,48 @@ def _draw_joules(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
     most = _SPAN * _largest(found)
     least = min(_FIRST, most / 10)
     sizes = np.geomspace(least, most, _SIZES)
-    axes.set_yscale("log")
-    if shape is not None:
+    factor, unit = spoken("rad")
+    if shape is None:
+        axes.set_yticks([])
+    else:
+        axes.set_yscale("log")
+        axes.set_ylabel(with_unit("energy of one turn", "J"))
         joules = [gain(found.question.arm, found.spring, shape, float(size)) for size in sizes]
         given, lost = np.abs([one[0] for one in joules]), np.array([one[1] for one in joules])
-        axes.plot(sizes, given, color=RED, label="the spring gives, slowly round")
+        axes.plot(factor * sizes, given, color=RED, label="the spring gives, slowly round")
         if lost.any():
-            axes.plot(sizes, lost, "--", color=BLUE, label="Coulomb friction takes")
+            axes.plot(factor * sizes, lost, "--", color=BLUE, label="Coulomb friction takes")
     if found.covered:
-        axes.axvspan(least, found.covered, color=GREEN, alpha=0.15, lw=0)
-        axes.axvline(found.covered, color=GREEN, lw=1.2, label=f"proved up to {found.covered:.3g} rad")
+        axes.axvspan(factor * least, factor * found.covered, color=GREEN, alpha=0.15, lw=0)
+        text = f"proved up to {factor * found.covered:.3g} {unit}"
+        axes.axvline(factor * found.covered, color=GREEN, ls="-.", lw=1.2, label=text)
     if found.loop is not None and found.slow is not None:
         reach = found.loop.reach(found.spring.rest)
-        axes.axvspan(reach, most, color=ORANGE, alpha=0.15, lw=0)
+        axes.axvspan(factor * reach, factor * most, color=ORANGE, alpha=0.15, lw=0)
         axes.plot(
-            [reach], [-found.slow.energy], "o", color=BLACK, ms=5,
-            label=f"replayed: {shown(-found.slow.energy, 'J')} out at {reach:.3g} rad",
+            [factor * reach], [-found.slow.energy], "o", color=BLACK, ms=5,
+            label=f"replayed: {shown(-found.slow.energy, 'J')} out at {factor * reach:.3g} {unit}",
         )  # fmt: skip
     if found.within is not None:
-        axes.axvline(found.within, color=GREY, lw=1.0, ls=":", label=f"asked: {found.within:.3g} rad")
+        text = f"asked: {factor * found.within:.3g} {unit}"
+        axes.axvline(factor * found.within, color=GREY, lw=1.0, ls=":", label=text)
     axes.set_xscale("log")
-    axes.set_xlim(least, most)
-    axes.xaxis.set_major_locator(FixedLocator([tick for tick in _TICKS if least <= tick <= most]))
+    axes.set_xlim(factor * least, factor * most)
+    ticks = [tick for tick in _TICKS if factor * least <= tick <= factor * most]
+    axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel("distance from the rest [rad]")
-    axes.set_ylabel("energy of one turn [J]")
-    axes.legend(loc="upper left", fontsize=7.5, frameon=True, framealpha=0.9, edgecolor="none")
+    axes.set_xlabel(with_unit("distance from the rest", unit))
+    legend(axes)
     known = (found.covered, found.loop.reach(found.spring.rest) if found.loop is not None else most)
     edges = (least, max(least, known[0]), known[1], most)
     for word, (start, end) in zip(("proved", "not known", "active"), pairwise(edges), strict=True):
         if end > 1.5 * start:
-            middle = float(np.sqrt(start * end))
             axes.text(
-                middle, 0.02, word, ha="center", fontsize=8, color=GREY, transform=axes.get_xaxis_transform()
-            )
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high * (high / low) ** 0.45)  # room for the legend
+                factor * float(np.sqrt(start * end)), 0.02, word, ha="center", fontsize=SMALL, color=GREY,
+                transform=axes.get_xaxis_transform(),
+            )  # fmt: skip
+    axes.set_ylim(axes.get_ylim()[0] / 3, None)  # room for the words
 
 
 @rc_context(LOOK)
@@ -323,7 +328,7 @@ def postures_figure(found: PostureMap) -> Figure:
     data = found.data[name]
     values = np.asarray(data.values, dtype=np.float64)
     known = values[np.isfinite(values)]
-    figure = new_figure(5.4, 5.0)
+    figure = new_figure()
     axes = figure.add_subplot()
     colours = axes.pcolormesh(
         found.data["radius"],
@@ -335,11 +340,13 @@ def postures_figure(found: PostureMap) -> Figure:
         shading="nearest",
         rasterized=True,
     )
-    label = f"{name.replace('_', ' ')} [{unit_text(data.attrs['units']) or '1'}]"
+    label = with_unit(name.replace("_", " "), data.attrs["units"])
     figure.colorbar(colours, ax=axes, label=label, extend="max")
     axes.set_aspect("equal")
-    axes.set_xlabel("distance from the first axis [m]")
-    axes.set_ylabel("height [m]")
-    note(axes, "the least of the postures tried in each cell; between them nothing is proved")
-    page_heading(figure, f"{found.question.arm.name}: {found.tried} postures", color=OUTCOME[found.outcome])
+    axes.set_xlabel(with_unit("distance from the first axis", "m"))
+    axes.set_ylabel(with_unit("height", "m"))
+    note(axes, "the least of the postures tried in each cell")
+    _fit(figure)
+    title = f"{found.question.arm.name}: {found.outcome}. {found.claim}"
+    page_heading(figure, title, color=OUTCOME[found.outcome])
     return figure
