@@ -94,6 +94,14 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     )
 
 
+def with_what_to_do(found: str, advice: Iterable[Advice], outcome: str) -> str:
+    """A sentence of what was found, without its point, and the one change that is easiest, or the slack."""
+    first = next(iter(in_lines(advice, outcome == "passive").changes), "")
+    if not first:
+        return f"{found}."
+    return f"{found}. Proved would be: {first}." if outcome == "undecided" else f"{found}: {first}."
+
+
 def _where_it_is(advice: Iterable[Advice]) -> Iterator[str]:
     """Those at a limit, and those of whose neighbours nothing is known."""
     words = "exactly at the limit", "proved where it is, and for delays of whole samples alone"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
+from zwidth.passivity.advice import Advice, with_what_to_do
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.criterion import LinearRefutation
@@ -16,7 +17,14 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
-from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
+from zwidth.passivity.wording import (
+    UNWRITTEN,
+    claim_of_a_motion,
+    claim_of_passivity,
+    describe_hands,
+    intervals,
+    lines,
+)
 from zwidth.quantity.answered import known
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import enough, in_unit, in_words
@@ -97,27 +105,48 @@ class Found(PassivityAnswer):
         return self.violation.witness
 
 
-def claim(verdict: Found) -> str:
-    """The verdict in a sentence or two."""
+def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
+    """What was found, how much and, of advice, what to do: the sentence of every report."""
     if verdict.outcome == "active":
-        if verdict.violation is not None:
-            return f"The hand can take any amount of energy out of this loop: {verdict.violation.describe()}."
-        assert verdict.witness is not None
-        return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+        return with_what_to_do(_active(verdict), advice, "active") + _unwritten(verdict)
+    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+    if verdict.outcome == "passive":
+        return with_what_to_do(proved, () if verdict.at_limit else advice, "passive")
     if verdict.outcome == "theorem":
         return f"By a proof on paper, without a certificate: {verdict.theorem}."
     if verdict.outcome == "undecided":
-        return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
-    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+        known = " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
+        return with_what_to_do(known.removesuffix("."), advice, "undecided")
     if verdict.outcome == "passive without encoder steps":
         return (
-            f"Read without encoder steps: {proved} With steps no Coulomb friction is enough for every scene, "
-            "and of this one nothing is known."
+            f"Read without encoder steps: {proved}. With steps no Coulomb friction is enough for every "
+            "scene, and of this one nothing is known."
         )
-    if verdict.outcome == "passive":
-        return proved
-    open_still = ["Of one that touches and leaves nothing is proved or refuted."]
-    return " ".join([proved, *(list(_by_bounded_hands(verdict)) or open_still)])
+    return f"{proved}. {_of_one_that_leaves(verdict)}"
+
+
+def _active(verdict: Found) -> str:
+    moved = None if verdict.scope.transmission == "as given" else verdict.witness
+    if moved is not None:  # no motion of two bodies is more than replayed
+        return claim_of_a_motion(moved)
+    assert verdict.violation is not None
+    return f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
+
+
+def _unwritten(verdict: Found) -> str:
+    if verdict.scope.transmission == "as given" or verdict.witness is not None:
+        return ""
+    return f" {UNWRITTEN}"
+
+
+def _of_one_that_leaves(verdict: Found) -> str:
+    """What is known of a hand that touches and leaves, and how much damping would do for each of them."""
+    known = next(_by_bounded_hands(verdict), "Of one that touches and leaves nothing is proved or refuted.")
+    decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
+    if decision is None or decision.contact_damping is None:
+        return known
+    needed = enough(float(decision.contact_damping), verdict.device.unit("damping"))
+    return f"{known} With a device damping of {needed} every hand would be covered."
 
 
 def assumptions(verdict: Found) -> tuple[str, ...]:

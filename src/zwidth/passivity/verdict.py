@@ -37,10 +37,10 @@ class Verdict(Found):
     FORMAT = "zwidth verdict 1"
     PICTURE = "check_figure"
 
-    @property
+    @cached_property
     def claim(self) -> str:
-        """The verdict in a sentence or two."""
-        return claim(self)
+        """The verdict in a sentence or two: what was found, how much, and what to do."""
+        return claim(self, self.advice)
 
     @property
     def assumptions(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ Nothing reads these sentences again: whoever needs a fact takes it from the reco
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.passivity.scope import (
     Contact,
@@ -22,6 +22,9 @@ from zwidth.passivity.scope import (
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
+
+if TYPE_CHECKING:
+    from zwidth.passivity.outcome_evidence import Moves
 
 NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
 
@@ -157,15 +160,49 @@ _SAMPLING: dict[Sampling, _Said] = {
 
 
 def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
-    """The sentence of a proof."""
+    """The sentence of a proof, without its point."""
     hand = {"kept": "a hand that keeps contact"}.get(scope.contact, "the hand")
     if not scope.hands.every:
         return (
             "No motion of the hand within these bounds takes energy out of this loop, ever"
-            f"{_for_any_value(scope)}{if_friction_goes_on(scope)}."
+            f"{_for_any_value(scope)}{if_friction_goes_on(scope)}"
         )
     more = "; it is exactly at its limit, equality included" if at_limit else ""
-    return f"{NO_MOTION.format(hand=hand)}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}."
+    return f"{NO_MOTION.format(hand=hand)}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}"
+
+
+UNWRITTEN = "No motion that shows it was found short enough to be written down."
+
+
+def claim_of_a_motion(moved: Moves) -> str:
+    """The sentence of a motion that takes energy out, without its point."""
+    beyond = is_beyond_hands(moved.depth, moved.peak_speed, moved.unit)
+    taken = takes("the hand", moved.energy, "loop", moved.motion.samples * moved.sample_period)
+    return f"{taken}{', although it is more than any hand does' if beyond else ''}"
+
+
+def takes(whose: str, energy: float, out_of: str, seconds: float) -> str:
+    """Of whose motion, how much it takes out [J], and how long it is [s]."""
+    return (
+        f"A motion of {whose} takes {shown(energy, 'J')} out of this {out_of} in {shown(seconds, 's')}, each "
+        "time it is made"
+    )
+
+
+_LARGEST = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
+"""How far, and how fast, a hand goes at most [m, m/s; rad, rad/s]."""
+
+
+def is_beyond_hands(depth: float, speed: float, unit: str) -> bool:
+    """Whether a motion is deeper [m; rad] or faster than any hand's."""
+    far, fast = _LARGEST[unit]
+    return depth > far or speed > fast
+
+
+def size(depth: float, speed: float, unit: str) -> str:
+    """How deep and how fast a motion is, and whether no hand does that."""
+    beyond = ", more than any hand does" if is_beyond_hands(depth, speed, unit) else ""
+    return f"to {shown(depth, unit)} at up to {shown(speed, f'{unit}/s')}{beyond}"
 
 
 def _for_any_value(scope: Scope) -> str:

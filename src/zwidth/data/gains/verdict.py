@@ -92,7 +92,7 @@ class JointVerdict:
     @answers()
     def claim(self) -> str:
         """In a sentence."""
-        return self.verdict.claim
+        return f"{self.verdict.found}."
 
     @property
     @answers()

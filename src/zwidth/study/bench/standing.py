@@ -27,6 +27,7 @@ from zwidth.model.rendering.rendering_law import LoopContext, half_a_step
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
+from zwidth.passivity.outcome_evidence import claim
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.chain_program import COUNTS, ChainProgram, chain_program
@@ -109,7 +110,7 @@ def _behind(device: Device, law: Environment) -> Standing:
     verdict = check(device, law, iterate=False)
     ideal = device.force_limit is device.force_resolution is None
     status: Status = "active" if ideal and verdict.outcome == "active" else "undecided"
-    return Standing(status=status, reason=verdict.claim, scope=_scope(device, law))
+    return Standing(status=status, reason=claim(verdict), scope=_scope(device, law))
 
 
 def _scope(device: Device, law: Environment) -> Scope:
@@ -128,16 +129,16 @@ def _by_check(device: Device, law: Environment) -> Standing | list[str]:
         return []
     verdict, why_not = _with_the_actuator(device, law)
     if verdict is not None:
-        reason = f"{verdict.claim}{_paid(device)}"
+        reason = f"{claim(verdict)}{_paid(device)}"
         return Standing(status="passive", reason=reason, scope=_scope(device, law))
     ideal = check_by_closed_forms(device, law)
     if ideal.is_proved:
-        return [f"For an ideal actuator: {ideal.claim} {why_not}"]
+        return [f"For an ideal actuator: {claim(ideal)} {why_not}"]
     if ideal.outcome == "active":
         if _takes_out(device, law, ideal):
-            return Standing(status="active", reason=ideal.claim, scope=_scope(device, law))
-        return [f"For an ideal actuator: {ideal.claim} With this one that motion does not gain."]
-    return [ideal.claim]
+            return Standing(status="active", reason=claim(ideal), scope=_scope(device, law))
+        return [f"For an ideal actuator: {claim(ideal)} With this one that motion does not gain."]
+    return [claim(ideal)]
 
 
 def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str]:
@@ -157,7 +158,7 @@ def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str
     return Standing(
         status="passive",
         reason=f"{added}, and every such force is covered, contact made and broken: "
-        f"{verdict.claim}{_paid(device)}",
+        f"{claim(verdict)}{_paid(device)}",
         scope=_scope(device, law),
     )
 
