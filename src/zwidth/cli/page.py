@@ -20,7 +20,6 @@ from rich.text import Text
 
 from zwidth.cli.output import GLUE, columns, quiet_pipe, spelled
 from zwidth.cli.parsing import command_lines
-from zwidth.passivity.wording import size
 from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
@@ -212,6 +211,8 @@ def _said_of_a_replay(witness: Moves) -> str:
 
 def motion_in_short(witness: Moves) -> str:
     """How long, how deep and how fast it is; what it takes where the claim does not say it."""
+    from zwidth.passivity.wording import size  # loaded by now
+
     replayed = _said_of_a_replay(witness)
     replayed = replayed and f", takes {shown(witness.energy, 'J')} out{replayed}"
     return (

@@ -27,7 +27,7 @@ from zwidth.passivity.wording import (
 )
 from zwidth.quantity.answered import known
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_unit, in_words
+from zwidth.quantity.text import enough, in_words, shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
@@ -231,7 +231,7 @@ def _not_found(verdict: Found) -> str:
     unit = verdict.device.unit
     lacking = [
         f"{in_words(need.name)} of {enough(need.needed, unit(need.name))} is proved enough, and there is "
-        f"{in_unit(need.has, unit(need.name))}"
+        f"{shown(need.has, unit(need.name), 6)}"
         for need in verdict.needs
         if need.has < need.needed
     ]
@@ -245,13 +245,13 @@ def _open(decision: Decision) -> str:
     if isinstance(decision.viscous, LinearRefutation):
         if decision.viscous.reason == "too close to zero":
             return (
-                "The linear criterion comes so close to zero that to tell its sign would take more work than "
-                "is spent on it. Give the law with fewer digits or of a lower order, or change the damping: "
+                "This loop is so close to its limit that to tell on which side would take more work than is "
+                "spent on it. Give the law with fewer digits or of a lower order, or change the damping: "
                 "the damping that is required is known, and is given with what is proved."
             )
         return (
-            f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not "
-            "confirmed by the independent checker within its bounds."
+            "No proof was found, and that energy comes out was not confirmed by the independent checker "
+            "within its bounds."
         )
     if not decision.loop.hidden_modes_decay:
         return (
@@ -263,7 +263,7 @@ def _open(decision: Decision) -> str:
     has = float(decision.setting.coulomb_friction)
     unit = GLOSSARY["coulomb_friction"].unit_for(decision.setting.motion)
     does = "no amount is proved enough" if need is None else f"{enough(float(need), unit)} is enough"
-    edge = in_unit(least, unit)
+    edge = shown(least, unit, 6)
     below = (
         f"straddling an encoder edge should gain below {edge}, yet no such motion was found short enough"
         if has < least
@@ -271,7 +271,7 @@ def _open(decision: Decision) -> str:
     )
     return (
         "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: {does}, {below}, and the device has {in_unit(has, unit)}."
+        f"is proved: {does}, {below}, and the device has {shown(has, unit, 6)}."
     )
 
 
@@ -279,13 +279,13 @@ def _clamped(decision: Decision) -> str:
     """What is known of a clamped law that is not proved."""
     damping, friction = decision.contact_damping, decision.contact_friction
     if damping is None or friction is None:
-        known = "and no other condition is known for this law and delay."
+        known = "and for this law and delay none that is enough."
     else:
         loop, has, motion = decision.loop, float(decision.setting.coulomb_friction), decision.setting.motion
         b, f = (GLOSSARY[name].unit_for(motion) for name in ("damping", "coulomb_friction"))
         known = (
             f"and what is proved enough is not there: damping of {enough(float(damping), b)}, the device "
-            f"has {in_unit(float(loop.damping), b)}; Coulomb friction of {enough(float(friction), f)}, it "
-            f"has {in_unit(has, f)}."
+            f"has {shown(float(loop.damping), b, 6)}; Coulomb friction of {enough(float(friction), f)}, it "
+            f"has {shown(has, f, 6)}."
         )
-    return f"The linear criterion does not cover a law whose force is clamped, {known}"
+    return f"Of a law whose force is clamped no exact condition is known, {known}"

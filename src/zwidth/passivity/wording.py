@@ -261,8 +261,7 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
     if scope.torque:
         yield _TORQUE[scope.torque].in_full
     if scope.largest_force is not None:
-        moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
-        yield f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"
+        yield _forces(scope)
     yield _SAMPLING[scope.sampling].in_full
     yield _ENCODER[scope.encoder].in_full
     yield from (f"{in_words(key)} was not given and taken as 0" for key in scope.assumed)
@@ -333,7 +332,7 @@ def describe_hands(hands: Hands, motion: str) -> str:
     if hands.impedance is not None:
         return f"a hand that is known: {hands.impedance}"
     if hands.activity is not None:
-        where = "" if hands.below is None else f" below {hands.below:g} Hz"
+        where = "" if hands.below is None else f" below {shown(hands.below, 'Hz', 6)}"
         most = told_quantity(hands.activity, "damping", motion)
         return f"hands that give out at most {most}{where} of their motion"
     bounds = []
@@ -388,7 +387,7 @@ def _short_parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
     yield _short_actuator(scope)
     yield _TRANSMISSION[scope.transmission].in_short
     yield _TORQUE[scope.torque].in_short
-    yield _short_forces(scope)
+    yield _forces(scope)
     yield _SAMPLING[scope.sampling].in_short
     yield _ENCODER[scope.encoder].in_short
     if scope.assumed:
@@ -433,8 +432,9 @@ def _short_actuator(scope: Scope) -> str:
     return f"{' and '.join(counted)} counted, else an ideal actuator" if counted else "ideal actuator"
 
 
-def _short_forces(scope: Scope) -> str:
+def _forces(scope: Scope) -> str:
     if scope.largest_force is None:
         return ""
-    moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
+    most = scope.largest_moment
+    moment = "" if most is None else f" and moments up to {shown(most, 'N*m', 6)}"
     return f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"
