@@ -221,7 +221,7 @@ def test_the_readme_example_says_what_comes_out():
     assert (verdict.max_stiffness, verdict.required_damping) == (300, 0.385)
     assert verdict.limit == "sampling against viscous damping"
     assert f"{verdict.witness.energy:.4f}" == "0.0014"
-    assert verdict.advice[0].text == "raise the rate from 1000 Hz to 2567 Hz"
+    assert verdict.advice[0].text == "raise the rate from 1 kHz to 2.567 kHz"
 
 
 def test_the_quickstart_example_says_what_comes_out(tmp_path, monkeypatch):

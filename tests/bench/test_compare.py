@@ -96,6 +96,12 @@ def test_what_the_docs_tell_of_the_bench(stiff):
                 assert float(number) == pytest.approx(value, rel=0.006, abs=6e-4), (name, variable)
 
 
+def test_the_energy_of_a_passive_law_is_said_to_end_in_friction(stiff):
+    for told in ([*stiff.in_short()], [*stiff.report()]):
+        assert "law gave" in str(told[2])
+        assert "friction takes all of it, and the hand gets none" in " ".join(map(str, told))
+
+
 def test_every_key_of_the_json_is_on_its_page(stiff):
     page = json_page()
     document = json.loads(stiff.to_json())

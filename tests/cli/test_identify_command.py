@@ -50,7 +50,7 @@ def test_the_report(run):
         "a mass–damper model of the same data would say",
         "damping limits the wall",
         "times as long would halve the interval",
-        "resolution 2.24e-05 m from the positions",
+        "resolution 22.4 µm from the positions",
     ):
         assert part in text
 

@@ -25,7 +25,7 @@ def test_the_tour_tells_its_story_and_writes_nothing(run, tmp_path, monkeypatch)
     said = run("tour").out
     badges = re.findall(r"^ (PASSIVE|ACTIVE) ", said, re.MULTILINE)
     assert badges == ["PASSIVE", "ACTIVE", "ACTIVE", "PASSIVE"]
-    for part in ("300 N/m, limited by", "extracts 1.427 mJ", "raise the rate from 1000 Hz to 2567 Hz"):
+    for part in ("300 N/m, limited by", "extracts 1.427 mJ", "raise the rate from 1 kHz to 2.567 kHz"):
         assert part in said
     assert max(map(len, said.splitlines())) <= 80
     assert list(tmp_path.iterdir()) == []

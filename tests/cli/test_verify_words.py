@@ -151,7 +151,7 @@ def test_an_active_loop_without_a_motion(run):
     law = "--type pulse-transfer-function --numerator 1,0 --denominator 1,-1"
     device = "--damping 900 --rate '1 kHz'"
     said = run(f"check {device} {law} --save verdict.json", 1).words
-    assert "ACTIVE The hand can take any amount of energy out of this loop: a motion at" in said
+    assert "ACTIVE A hand can take any amount of energy out of this loop (a motion at" in said
     assert "No motion that shows it was found short enough to be written down." in said
     document = json.loads(Path("verdict.json").read_text(encoding="utf-8"))
     assert ("violation" in document, "witness" in document) == (True, False)

@@ -82,7 +82,7 @@ COUNTED = (
 def test_encoder_steps_are_counted_up_to_a_force(run):
     words = run(f"{COUNTED} -o proof.json --all").words
     assert "for wall forces up to 28.6 N, proved. Encoder steps are counted" in words
-    assert re.search(r"0.005774 N·m, 0.002954 N·m in joint 1, 2, and .* more for each newton", words)
+    assert re.search(r"5.774 mN·m, 2.954 mN·m in joint 1, 2, and .* more for each newton", words)
     covered = r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out"
     assert re.search(covered, words)
     run("verify proof.json").says("its encoder steps counted: force and Jacobian are those of the readings")

@@ -76,7 +76,7 @@ def test_it_is_bilateral_nonlinear_and_says_its_numbers():
     assert not any([spring.unilateral, spring.linear, spring.spring, spring.clamped])
     assert spring.is_certain
     assert spring.describe() == (
-        "nonlinear spring, 3 points from -0.01 m to 0.02 m, force -1 N to 4 N, slope up to 200 N/m"
+        "nonlinear spring, 3 points from -10 mm to 20 mm, force -1 N to 4 N, slope up to 200 N/m"
     )
     assert spring.describe("rotary").endswith("from -0.01 rad to 0.02 rad, force -1 N·m to 4 N·m, "
                                               "slope up to 200 N·m/rad")  # fmt: skip

@@ -144,7 +144,7 @@ def test_a_sample_period_that_disagrees_is_refused():
 
 def test_numbers_are_read_in_one_line():
     law = zw.PulseTransferFunction([1, 0, -0.5], [1, 0.2, -1, 0.03], 1e-3)
-    assert law.describe() == "H(z) = (z² − 0.5)/(z³ + 0.2 z² − 1 z + 0.03), T = 0.001 s"
+    assert law.describe() == "H(z) = (z² − 0.5)/(z³ + 0.2 z² − 1 z + 0.03), T = 1 ms"
     assert eval(repr(law), vars(zw)) == law
     spring = zw.ContinuousTransferFunction([300], [1], "zoh")
     assert spring.describe() == "H(s) = 300, discretization zoh"

@@ -138,7 +138,7 @@ def test_what_was_taken_for_granted_is_said(tmp_path):
     gains = zw.read_gains(written(tmp_path, "a.yaml", openarm()))
     plain = " ".join(zw.check_gains(gains).notes)
     for part in ("FREQUENCY", "not measured", "Damiao drive is not published", "measured on no arm of yours",
-                 "steps of 0.0003815 rad", "to and fro at 10 kHz", "tanh(0.1 k v)"):  # fmt: skip
+                 "steps of 381.5 µrad", "to and fro at 10 kHz", "tanh(0.1 k v)"):  # fmt: skip
         assert part in plain
     setting = {"rate": 1000, "delay": "1 ms", "drive_rate": "5 kHz", "compensated": False}
     plant = arm(resolution=0.0001, coulomb_friction=1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -54,6 +55,11 @@ def test_every_kind_of_port_has_its_row(compared: LinkComparison) -> None:
 
 def test_it_is_written_and_drawn(compared: LinkComparison, tmp_path: Path) -> None:
     assert "waves with a ledger" in str(compared)
+    rows = {**compared.rows, "quiet": {**ROW, "outcome": "active"}}
+    for outcome, known in (("active", "without delay one of them does"), ("undecided", "is not proved")):
+        of_nothing = any(row["outcome"] == outcome and row["taken"] == 0 for row in rows.values())
+        assert (f"{outcome} with 0: none of the hands" in str(replace(compared, rows=rows))) == of_nothing
+        assert not of_nothing or known in str(replace(compared, rows=rows))
     compared.save(tmp_path / "links.json")
     ports = json.loads((tmp_path / "links.json").read_text())["ports"]
     assert set(ports) == set(NAMES)
@@ -98,7 +104,7 @@ def test_a_rotary_device_has_its_own_units() -> None:
     found = zw.links.compare(device, schedule=link, ports=ports)
     assert found.scores["felt_stiffness"].attrs["units"] == "N*m/rad"
     assert float(found.scores["felt_stiffness"].sel(port="waves")) == pytest.approx(1e-3 / 0.012, rel=0.01)
-    assert "w = 0.001 N·m·s/rad" in ports["waves"][0].describe()
+    assert "w = 1 mN·m·s/rad" in ports["waves"][0].describe()
 
 
 def test_ports_that_do_not_fit_are_refused() -> None:

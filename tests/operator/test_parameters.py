@@ -14,7 +14,7 @@ from zwidth.errors import InputError
 from zwidth.model import operator as operators
 from zwidth.model.operator import OPERATORS, Operator
 from zwidth.quantity.parameter import parameters_of
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 TIMES = np.arange(801) * 0.0025
@@ -71,8 +71,7 @@ def test_describes_itself_with_every_number(kind):
         line = hand.describe(motion)
         assert "\n" not in line
         for name, quantity in kind.parameters().items():
-            unit, value = unit_text(quantity.unit_for(motion)), getattr(hand, name)
-            assert f"{value:.6g} {unit}" in line or f"{1e6 * value:.6g} µ{unit}" in line
+            assert shown(getattr(hand, name), quantity.unit_for(motion), 6) in line
 
 
 @EACH

@@ -15,9 +15,11 @@ from zwidth import checker
 from zwidth.checker import judge
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.criterion_choice import decide
+from zwidth.passivity.outcome_evidence import claim
 from zwidth.passivity.storage.gain import Gain, peak_force, settled_round
 from zwidth.passivity.value_iteration_fallback import has_gap
 from zwidth.passivity.wording import describe_hands
+from zwidth.quantity.text import shown
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 STIFF = zw.Wall(stiffness=1500, damping=0.05, clamped=True)
@@ -36,7 +38,7 @@ def test_a_motion_of_the_game_refutes_what_was_undecided() -> None:
     assert isinstance(verdict.witness, Gain)
     assert verdict.certificate is None
     assert verdict.available_storage.witness is verdict.witness
-    assert verdict.witness.describe() in verdict.claim
+    assert f"takes {shown(verdict.witness.energy, 'J')} out of this loop in" in verdict.claim
     assert checker.verify(verdict.witness.to_dict()).energy == verdict.witness.exact_energy
     assert verdict.scope.contact == "made and broken"
     replayed = zw.replay(verdict)
@@ -50,7 +52,7 @@ def test_a_proof_of_bounded_hands_decides_nothing_of_every_hand() -> None:
     assert verdict.available_storage.outcome == "passive"
     hands = describe_hands(verdict.available_storage.scope.hands, "linear")
     assert f"Contact made and broken: proved passive for {hands}." in verdict.claim
-    assert verdict.claim.startswith(check_by_closed_forms(PADDLE, CLAMPED).claim)
+    assert verdict.claim.startswith(claim(check_by_closed_forms(PADDLE, CLAMPED)))
 
 
 def test_a_proof_of_sustained_contact_says_for_whom_contact_is_covered() -> None:

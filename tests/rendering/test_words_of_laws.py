@@ -197,10 +197,10 @@ def test_the_branch_of_a_maxwell_body_is_the_spring_of_reference():
 @pytest.mark.parametrize(
     ("law", "said"),
     [
-        (EnergyTank(level="0.002", refill=3), "energy tank (to 0.002 J, refill 3 N·m·s/rad per J)"),
+        (EnergyTank(level="0.002", refill=3), "energy tank (to 2 mJ, refill 3 N·m·s/rad per J)"),
         (
             EventTransient("fixed", amplitude=2),
-            f"transient at entry (fixed, 2 N·m·s/rad, for 0.01 s) {WINDOW}",
+            f"transient at entry (fixed, 2 N·m·s/rad, for 10 ms) {WINDOW}",
         ),
         (
             Hysteresis(fastest=3, stiffness=5, clamped=True),
@@ -212,7 +212,7 @@ def test_the_branch_of_a_maxwell_body_is_the_spring_of_reference():
         (Dither(kind="random"), "random dither of part of a converter step"),
         (Saturation(3), "saturation at 3 N·m"),
         (Saturation(), "saturation at the force limit"),
-        (AdaptiveWindow(1e-4), "adaptive window of up to 15 samples within 0.0001 rad, end fit"),
+        (AdaptiveWindow(1e-4), "adaptive window of up to 15 samples within 100 µrad, end fit"),
         (Kalman(30), "Kalman filter for 30 (rad/s²)/√Hz"),
         (TickTime(), "time between ticks"),
         (
@@ -248,7 +248,7 @@ def test_described_on_a_rotary_device(law, said):
             BrakingPulse(2, 3, Kalman()),
             "braking pulse that stops 2 kg, at most 3 N on Kalman filter for a count in ten samples",
         ),
-        (EventTransient(), f"transient at entry (decaying, 100 Hz, 0.01 s) {WINDOW}"),
+        (EventTransient(), f"transient at entry (decaying, 100 Hz, 10 ms) {WINDOW}"),
         (
             EventTransient("acceleration", record=[1, 2]),
             f"transient at entry (acceleration, record of 2 samples) {WINDOW}",

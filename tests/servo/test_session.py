@@ -1,5 +1,6 @@
 """A device served: what it is given, when the force ends, and what is refused."""
 
+import dataclasses
 import math
 import time
 
@@ -57,6 +58,10 @@ def test_force_pushes_out_of_the_wall_and_never_outside():
     assert column(servo, "phase")[-1] == 3
     assert servo.report().ended == "ended, since the time was over"
     assert not servo.report().failed
+    said = {0.0: "At no time", -0.002: "At some time the hand may have got 2 mJ more", None: "is not known"}
+    for least, words in said.items():
+        report = dataclasses.replace(servo.report(), least=least)
+        assert words in " ".join(map(str, report.report()))
 
 
 def test_wall_lies_where_it_is_placed():

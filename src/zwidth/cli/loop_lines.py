@@ -78,14 +78,15 @@ def _named(entry: Quantity, value: Exact | Interval, motion: str) -> str:
 _FEW = 3
 
 
-def advice_rows(advice: Iterable[Advice], passive: bool) -> Iterator[tuple[str, str]]:
-    """The few that are changed most easily, as (name, text); each of them alone does it."""
+def advice_rows(advice: Iterable[Advice], passive: bool, claim: str) -> Iterator[tuple[str, str]]:
+    """The few that are changed most easily, as (name, text), less that in the claim; each alone does it."""
     told = in_lines(advice, passive)
     texts = [told.at_limit, *told.changes] if told.at_limit else [*told.changes]
     if not texts and told.useless:
         texts = [told.useless]
     for place, text in enumerate(texts[:_FEW]):
-        yield "or" if place else "slack" if passive else "change", text
+        if text not in claim:
+            yield "or" if place else "slack" if passive else "change", text
 
 
 def advice_section(advice: Iterable[Advice], passive: bool) -> tuple[str, Iterator[Text]]:

@@ -209,21 +209,16 @@ def _said_of_a_replay(witness: Moves) -> str:
     return "" if checked else ", replayed in the simulator, not checked by the independent checker"
 
 
-_LARGEST = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
-"""How far, and how fast, a hand goes at most [m, m/s; rad, rad/s]."""
-
-
 def motion_in_short(witness: Moves) -> str:
     """How long, how deep and how fast it is; what it takes where the claim does not say it."""
+    from zwidth.passivity.wording import size  # loaded by now
+
     replayed = _said_of_a_replay(witness)
     replayed = replayed and f", takes {shown(witness.energy, 'J')} out{replayed}"
-    far, fast = _LARGEST[witness.unit]
-    beyond = witness.depth > far or witness.peak_speed > fast
     return (
         f"{witness.motion.samples:.6g} samples in "
-        f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
-        f"{shown(witness.depth, witness.unit)} at up to {shown(witness.peak_speed, witness.unit + '/s')}"
-        f"{', more than any hand does' if beyond else ''}{replayed}"
+        f"{shown(witness.motion.samples * witness.sample_period, 's')}, "
+        f"{size(witness.depth, witness.peak_speed, witness.unit)}{replayed}"
     )
 
 

@@ -28,7 +28,7 @@ from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import readable, unit_text
+from zwidth.quantity.text import shown, unit_text
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -162,13 +162,23 @@ class LinkComparison(Documented):
         yield f"passive over every link that makes up no packets: {', '.join(passive) or 'none'}"
         yield f"the link of these numbers: {self.schedule.describe()}"
         if self.held_back:
-            times = " and ".join(dict.fromkeys(readable(float(time), "s") for time in self.held_back))
+            times = " and ".join(dict.fromkeys(shown(float(time), "s") for time in self.held_back))
             yield (
                 f"each force is kept back by {times} more, until a sample ends: of loops that do so alone is "
                 "this proved"
             )
         yield ""
         yield Table(heads=heads, rows=rows, lefts=2)
+        for outcome, known in _OF_NOTHING.items():
+            if any(row["outcome"] == outcome and row["taken"] == 0 for row in self.rows.values()):
+                yield f"{outcome} with 0: none of the hands that were tried takes any over this link; {known}"
+
+
+_OF_NOTHING = {
+    "active": "over a link without delay one of them does",
+    "undecided": "that no hand does is not proved",
+}
+"""What is known of a port, by its outcome, where no hand took any energy over the link that was asked."""
 
 
 def _known(value: float) -> float | None:

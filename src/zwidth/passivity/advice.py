@@ -20,7 +20,7 @@ from zwidth.passivity.linear.boundary import (
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import alike, in_words, outward_decimal
+from zwidth.quantity.text import in_words, outward_decimal, shown
 
 Kind = Literal["change", "slack"]
 
@@ -92,6 +92,14 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
         "; ".join(_where_it_is(at_limit)),
         f"{none}: {_names(useless)}" if useless else "",
     )
+
+
+def with_what_to_do(found: str, advice: Iterable[Advice], outcome: str) -> str:
+    """A sentence of what was found, without its point, and the one change that is easiest, or the slack."""
+    first = next(iter(in_lines(advice, outcome == "passive").changes), "")
+    if not first:
+        return f"{found}."
+    return f"{found}. Proved would be: {first}." if outcome == "undecided" else f"{found}: {first}."
 
 
 def _where_it_is(advice: Iterable[Advice]) -> Iterator[str]:
@@ -274,7 +282,7 @@ def _text(knob: Knob, to: float | None, unit: str, kind: Kind, is_alone: bool) -
     size = to * spoken(unit)[0]
     digits = next((n for n in range(6, 17) if abs(float(f"{size:.{n}g}") - size) <= 1e-15 * size), 17)
     near = 4 if digits == 6 and abs(to - knob.current) > 2e-3 * abs(to) else 12
-    now, wanted = alike(unit, (knob.sign * knob.current, knob.sign * to), (near, digits))
+    now, wanted = shown(knob.sign * knob.current, unit, near), shown(knob.sign * to, unit, digits)
     if kind == "change":
         return f"{'raise' if higher else 'lower'} the {name} from {now} to {wanted}{hands}"
     if to == knob.current:

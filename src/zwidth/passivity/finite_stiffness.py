@@ -30,7 +30,7 @@ from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.documented import Documented
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -126,13 +126,14 @@ class FiniteStiffnessReplay(Documented):
     def rows(self) -> Iterator[tuple[str, str]]:
         """What a person reads."""
         times = f" (its cycle {self.rounds} of {self.rounds_found:,} times)" if self.rounds_found > 1 else ""
-        yield "ideal hand", f"{self.claimed:.4g} J by the proof, {self.replayed:.4g} J simulated{times}"
+        proved, simulated = shown(self.claimed, "J"), shown(self.replayed, "J")
+        yield "ideal hand", f"{proved} by the proof, {simulated} simulated{times}"
         for threshold in self.thresholds:
             if threshold.stiffness is None:
-                text = f"gets nothing out, up to {self.curve[-1].bandwidth:.3g} Hz"
+                text = f"gets nothing out, up to {shown(self.curve[-1].bandwidth, 'Hz', 3)}"
             else:
                 k = told_quantity(threshold.stiffness, "stiffness", self.motion, 3)
-                text = f"must be stiffer than {k}, quicker than {threshold.bandwidth:.3g} Hz"
+                text = f"must be stiffer than {k}, quicker than {shown(threshold.bandwidth, 'Hz', 3)}"
             yield f"a hand on {told_quantity(threshold.mass, 'mass', self.motion, 3)}", text
         yield "best hand tried", f"{100 * self.best_share:.3g} % of the ideal energy"
 

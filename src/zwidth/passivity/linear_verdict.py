@@ -21,7 +21,7 @@ from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import at_most, enough, in_unit, in_words
+from zwidth.quantity.text import at_most, enough, in_words, shown
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -223,16 +223,16 @@ class LinearVerdict(Verdict):
         rows = [("limit", self.limit)]
         if parameter_limits.has_stiffness(self.environment):
             most = at_most(self.max_stiffness, unit["stiffness"])
-            rows.append(("largest passive stiffness", in_unit(most, unit["stiffness"])))
+            rows.append(("largest passive stiffness", shown(most, unit["stiffness"], 6)))
         else:
-            rows.append(("largest passive gain", in_unit(at_most(self.max_gain, "1"), "times this law")))
+            rows.append(("largest passive gain", shown(at_most(self.max_gain, "1"), "times this law", 6)))
         rows.append(("required device damping", enough(self.required_damping, unit["damping"])))
-        rows.append(("critical frequency", in_unit(self.critical_frequency, "Hz")))
+        rows.append(("critical frequency", shown(self.critical_frequency, "Hz", 6)))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
-            rows.append((f"margin of {in_words(name)}", in_unit(value, margin_unit)))
+            rows.append((f"margin of {in_words(name)}", shown(value, margin_unit, 6)))
         if self.admissible_speed is not None:
-            speed = in_unit(self.admissible_speed, self.device.unit("velocity"))
+            speed = shown(self.admissible_speed, self.device.unit("velocity"), 6)
             rows.append(("slower hands are safe up to", speed))
         if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
             damping = enough(float(self.decision.contact_damping), unit["damping"])

@@ -52,7 +52,7 @@ from zwidth.passivity.parameter_limits import (
     provable,
 )
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.text import in_words, readable
+from zwidth.quantity.text import in_words, shown
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
@@ -238,7 +238,7 @@ def _estimators(asked: Asked, wall: Wall, hands: str, grain: int) -> Iterator[Ad
         first = next((t for t in (period * 2**power for power in range(10)) if knob.proves(t)), None)
         tau = first and smallest_holding(knob.holds, first, grain, knob.likely())
         if tau is not None and asked.covers(turned(asked.box, "time_constant", Exact(tau).fraction)):
-            yield told(f"one-pole filter of {readable(outward(tau, knob), 's')}", " (time constant)")
+            yield told(f"one-pole filter of {shown(outward(tau, knob), 's')}", " (time constant)")
 
 
 # A nonlinear spring (`formulas.nonlinear_spring`): its stiffness is its steepest slope s, and a softer one

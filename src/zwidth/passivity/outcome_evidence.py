@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
+from zwidth.passivity.advice import Advice, with_what_to_do
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.criterion import LinearRefutation
@@ -16,10 +17,17 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
-from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
+from zwidth.passivity.wording import (
+    UNWRITTEN,
+    claim_of_a_motion,
+    claim_of_passivity,
+    describe_hands,
+    intervals,
+    lines,
+)
 from zwidth.quantity.answered import known
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_unit, in_words
+from zwidth.quantity.text import enough, in_words, shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
@@ -97,27 +105,48 @@ class Found(PassivityAnswer):
         return self.violation.witness
 
 
-def claim(verdict: Found) -> str:
-    """The verdict in a sentence or two."""
+def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
+    """What was found, how much and, of advice, what to do: the sentence of every report."""
     if verdict.outcome == "active":
-        if verdict.violation is not None:
-            return f"The hand can take any amount of energy out of this loop: {verdict.violation.describe()}."
-        assert verdict.witness is not None
-        return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+        return with_what_to_do(_active(verdict), advice, "active") + _unwritten(verdict)
+    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+    if verdict.outcome == "passive":
+        return with_what_to_do(proved, () if verdict.at_limit else advice, "passive")
     if verdict.outcome == "theorem":
         return f"By a proof on paper, without a certificate: {verdict.theorem}."
     if verdict.outcome == "undecided":
-        return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
-    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+        known = " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
+        return with_what_to_do(known.removesuffix("."), advice, "undecided")
     if verdict.outcome == "passive without encoder steps":
         return (
-            f"Read without encoder steps: {proved} With steps no Coulomb friction is enough for every scene, "
-            "and of this one nothing is known."
+            f"Read without encoder steps: {proved}. With steps no Coulomb friction is enough for every "
+            "scene, and of this one nothing is known."
         )
-    if verdict.outcome == "passive":
-        return proved
-    open_still = ["Of one that touches and leaves nothing is proved or refuted."]
-    return " ".join([proved, *(list(_by_bounded_hands(verdict)) or open_still)])
+    return f"{proved}. {_of_one_that_leaves(verdict)}"
+
+
+def _active(verdict: Found) -> str:
+    moved = None if verdict.scope.transmission == "as given" else verdict.witness
+    if moved is not None:  # no motion of two bodies is more than replayed
+        return claim_of_a_motion(moved)
+    assert verdict.violation is not None
+    return f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
+
+
+def _unwritten(verdict: Found) -> str:
+    if verdict.scope.transmission == "as given" or verdict.witness is not None:
+        return ""
+    return f" {UNWRITTEN}"
+
+
+def _of_one_that_leaves(verdict: Found) -> str:
+    """What is known of a hand that touches and leaves, and how much damping would do for each of them."""
+    known = next(_by_bounded_hands(verdict), "Of one that touches and leaves nothing is proved or refuted.")
+    decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
+    if decision is None or decision.contact_damping is None:
+        return known
+    needed = enough(float(decision.contact_damping), verdict.device.unit("damping"))
+    return f"{known} With a device damping of {needed} every hand would be covered."
 
 
 def assumptions(verdict: Found) -> tuple[str, ...]:
@@ -202,7 +231,7 @@ def _not_found(verdict: Found) -> str:
     unit = verdict.device.unit
     lacking = [
         f"{in_words(need.name)} of {enough(need.needed, unit(need.name))} is proved enough, and there is "
-        f"{in_unit(need.has, unit(need.name))}"
+        f"{shown(need.has, unit(need.name), 6)}"
         for need in verdict.needs
         if need.has < need.needed
     ]
@@ -216,13 +245,13 @@ def _open(decision: Decision) -> str:
     if isinstance(decision.viscous, LinearRefutation):
         if decision.viscous.reason == "too close to zero":
             return (
-                "The linear criterion comes so close to zero that to tell its sign would take more work than "
-                "is spent on it. Give the law with fewer digits or of a lower order, or change the damping: "
+                "This loop is so close to its limit that to tell on which side would take more work than is "
+                "spent on it. Give the law with fewer digits or of a lower order, or change the damping: "
                 "the damping that is required is known, and is given with what is proved."
             )
         return (
-            f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not "
-            "confirmed by the independent checker within its bounds."
+            "No proof was found, and that energy comes out was not confirmed by the independent checker "
+            "within its bounds."
         )
     if not decision.loop.hidden_modes_decay:
         return (
@@ -234,7 +263,7 @@ def _open(decision: Decision) -> str:
     has = float(decision.setting.coulomb_friction)
     unit = GLOSSARY["coulomb_friction"].unit_for(decision.setting.motion)
     does = "no amount is proved enough" if need is None else f"{enough(float(need), unit)} is enough"
-    edge = in_unit(least, unit)
+    edge = shown(least, unit, 6)
     below = (
         f"straddling an encoder edge should gain below {edge}, yet no such motion was found short enough"
         if has < least
@@ -242,7 +271,7 @@ def _open(decision: Decision) -> str:
     )
     return (
         "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: {does}, {below}, and the device has {in_unit(has, unit)}."
+        f"is proved: {does}, {below}, and the device has {shown(has, unit, 6)}."
     )
 
 
@@ -250,13 +279,13 @@ def _clamped(decision: Decision) -> str:
     """What is known of a clamped law that is not proved."""
     damping, friction = decision.contact_damping, decision.contact_friction
     if damping is None or friction is None:
-        known = "and no other condition is known for this law and delay."
+        known = "and for this law and delay none that is enough."
     else:
         loop, has, motion = decision.loop, float(decision.setting.coulomb_friction), decision.setting.motion
         b, f = (GLOSSARY[name].unit_for(motion) for name in ("damping", "coulomb_friction"))
         known = (
             f"and what is proved enough is not there: damping of {enough(float(damping), b)}, the device "
-            f"has {in_unit(float(loop.damping), b)}; Coulomb friction of {enough(float(friction), f)}, it "
-            f"has {in_unit(has, f)}."
+            f"has {shown(float(loop.damping), b, 6)}; Coulomb friction of {enough(float(friction), f)}, it "
+            f"has {shown(has, f, 6)}."
         )
-    return f"The linear criterion does not cover a law whose force is clamped, {known}"
+    return f"Of a law whose force is clamped no exact condition is known, {known}"

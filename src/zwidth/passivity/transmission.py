@@ -46,7 +46,7 @@ from zwidth.passivity.witness.witness import Setting
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import at_least, at_most, exact_text, in_unit
+from zwidth.quantity.text import at_least, at_most, exact_text, shown
 
 Judge = Callable[[Device], Verdict]
 
@@ -159,7 +159,7 @@ class TransmissionVerdict(Verdict):
         to = at_most(most, unit["stiffness"])
         if to and to != inf and parameter_limits.has_stiffness(self.environment):
             now = float(ends(parameter_limits.stiffness_of(self.environment))[1])
-            here, there = (in_unit(value, unit["stiffness"]) for value in (now, to))
+            here, there = (shown(value, unit["stiffness"], 6) for value in (now, to))
             text = (
                 f"stiffness may go up to {there} (now {here})"
                 if proved
@@ -188,19 +188,19 @@ class TransmissionVerdict(Verdict):
         unit = GLOSSARY["stiffness"].unit_for(self.device.motion)
         rows = [("decided by", self.decided_by)]
         if self.max_stiffness_any_transmission is not None:
-            most = in_unit(at_most(self.max_stiffness_any_transmission, unit), unit)
+            most = shown(at_most(self.max_stiffness_any_transmission, unit), unit, 6)
             rows.append(("largest stiffness, however it gives way", most))
         if self.max_stiffness_viscous is not None:
-            most = in_unit(at_most(self.max_stiffness_viscous, unit), unit)
+            most = shown(at_most(self.max_stiffness_viscous, unit), unit, 6)
             rows.append((", ".join(("largest stiffness, this one", *filter(None, (self._with,)))), most))
         if self.resonance is not None:
-            rows.append(("the motor swings on it at", in_unit(self.resonance, "Hz")))
+            rows.append(("the motor swings on it at", shown(self.resonance, "Hz", 6)))
         return rows
 
 
 def _raised(parameter: str, name: str, now: float, to: float | None, unit: str) -> Advice:
     assert to is not None
-    here, there = (in_unit(value, unit) for value in (now, to))
+    here, there = (shown(value, unit, 6) for value in (now, to))
     text = f"raise the {name} of the motor's side from {here} to {there}"
     return Advice(parameter, now, to, unit, "change", text)
 

@@ -15,7 +15,7 @@ from zwidth.passivity.outcome_evidence import Found, assumptions, claim, decided
 from zwidth.quantity.answered import answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_unit, in_words, save_json, told_quantity
+from zwidth.quantity.text import enough, in_words, save_json, shown, told_quantity
 from zwidth.showing import Lines, Part
 
 if TYPE_CHECKING:
@@ -37,10 +37,10 @@ class Verdict(Found):
     FORMAT = "zwidth verdict 1"
     PICTURE = "check_figure"
 
-    @property
+    @cached_property
     def claim(self) -> str:
-        """The verdict in a sentence or two."""
-        return claim(self)
+        """The verdict in a sentence or two: what was found, how much, and what to do."""
+        return claim(self, self.advice)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
@@ -166,7 +166,7 @@ class Verdict(Found):
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
             name = in_words(need.name)
             rows.append((f"required {name}", enough(need.needed, unit)))
-            rows.append((f"margin of {name}", in_unit(need.has - need.needed, unit)))
+            rows.append((f"margin of {name}", shown(need.has - need.needed, unit, 6)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows

@@ -6,7 +6,7 @@ Nothing reads these sentences again: whoever needs a fact takes it from the reco
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.passivity.scope import (
     Contact,
@@ -22,6 +22,9 @@ from zwidth.passivity.scope import (
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
+
+if TYPE_CHECKING:
+    from zwidth.passivity.outcome_evidence import Moves
 
 NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
 
@@ -157,15 +160,49 @@ _SAMPLING: dict[Sampling, _Said] = {
 
 
 def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
-    """The sentence of a proof."""
+    """The sentence of a proof, without its point."""
     hand = {"kept": "a hand that keeps contact"}.get(scope.contact, "the hand")
     if not scope.hands.every:
         return (
             "No motion of the hand within these bounds takes energy out of this loop, ever"
-            f"{_for_any_value(scope)}{if_friction_goes_on(scope)}."
+            f"{_for_any_value(scope)}{if_friction_goes_on(scope)}"
         )
     more = "; it is exactly at its limit, equality included" if at_limit else ""
-    return f"{NO_MOTION.format(hand=hand)}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}."
+    return f"{NO_MOTION.format(hand=hand)}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}"
+
+
+UNWRITTEN = "No motion that shows it was found short enough to be written down."
+
+
+def claim_of_a_motion(moved: Moves) -> str:
+    """The sentence of a motion that takes energy out, without its point."""
+    beyond = is_beyond_hands(moved.depth, moved.peak_speed, moved.unit)
+    taken = takes("the hand", moved.energy, "loop", moved.motion.samples * moved.sample_period)
+    return f"{taken}{', although it is more than any hand does' if beyond else ''}"
+
+
+def takes(whose: str, energy: float, out_of: str, seconds: float) -> str:
+    """Of whose motion, how much it takes out [J], and how long it is [s]."""
+    return (
+        f"A motion of {whose} takes {shown(energy, 'J')} out of this {out_of} in {shown(seconds, 's')}, each "
+        "time it is made"
+    )
+
+
+_LARGEST = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
+"""How far, and how fast, a hand goes at most [m, m/s; rad, rad/s]."""
+
+
+def is_beyond_hands(depth: float, speed: float, unit: str) -> bool:
+    """Whether a motion is deeper [m; rad] or faster than any hand's."""
+    far, fast = _LARGEST[unit]
+    return depth > far or speed > fast
+
+
+def size(depth: float, speed: float, unit: str) -> str:
+    """How deep and how fast a motion is, and whether no hand does that."""
+    beyond = ", more than any hand does" if is_beyond_hands(depth, speed, unit) else ""
+    return f"to {shown(depth, unit)} at up to {shown(speed, f'{unit}/s')}{beyond}"
 
 
 def _for_any_value(scope: Scope) -> str:
@@ -224,8 +261,7 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
     if scope.torque:
         yield _TORQUE[scope.torque].in_full
     if scope.largest_force is not None:
-        moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
-        yield f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"
+        yield _forces(scope)
     yield _SAMPLING[scope.sampling].in_full
     yield _ENCODER[scope.encoder].in_full
     yield from (f"{in_words(key)} was not given and taken as 0" for key in scope.assumed)
@@ -296,7 +332,7 @@ def describe_hands(hands: Hands, motion: str) -> str:
     if hands.impedance is not None:
         return f"a hand that is known: {hands.impedance}"
     if hands.activity is not None:
-        where = "" if hands.below is None else f" below {hands.below:g} Hz"
+        where = "" if hands.below is None else f" below {shown(hands.below, 'Hz', 6)}"
         most = told_quantity(hands.activity, "damping", motion)
         return f"hands that give out at most {most}{where} of their motion"
     bounds = []
@@ -351,7 +387,7 @@ def _short_parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
     yield _short_actuator(scope)
     yield _TRANSMISSION[scope.transmission].in_short
     yield _TORQUE[scope.torque].in_short
-    yield _short_forces(scope)
+    yield _forces(scope)
     yield _SAMPLING[scope.sampling].in_short
     yield _ENCODER[scope.encoder].in_short
     if scope.assumed:
@@ -396,8 +432,9 @@ def _short_actuator(scope: Scope) -> str:
     return f"{' and '.join(counted)} counted, else an ideal actuator" if counted else "ideal actuator"
 
 
-def _short_forces(scope: Scope) -> str:
+def _forces(scope: Scope) -> str:
     if scope.largest_force is None:
         return ""
-    moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
+    most = scope.largest_moment
+    moment = "" if most is None else f" and moments up to {shown(most, 'N*m', 6)}"
     return f"forces of the wall up to {told_quantity(scope.largest_force, 'force', scope.motion)}{moment}"

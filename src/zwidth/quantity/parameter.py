@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.quantity.text import told, unit_text
+from zwidth.quantity.text import shown, unit_text
 from zwidth.quantity.units import parse, parse_number
 
 T = TypeVar("T")
@@ -121,7 +121,7 @@ class Parametric:
         value = getattr(self, name)
         if value is None:
             return ""
-        return told(value, parameters_of(type(self))[name].unit_for(motion))
+        return shown(value, parameters_of(type(self))[name].unit_for(motion), 6)
 
     def _unit(self, name: str, motion: str) -> str:
         return unit_text(parameters_of(type(self))[name].unit_for(motion))

@@ -17,17 +17,18 @@ from zwidth.writing import writing_whole
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 """By the power of ten."""
 
-_PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
-"""Units that people prefix in text; N·s/m stays as it is, and 300 N/m too."""
+_AS_IT_IS = {
+    "m": (1.0, inf), "s": (1.0, inf), "m/s": (0.1, inf), "J": (1.0, 1e3), "Hz": (0.0, 1e3),
+    "N": (0.01, 1e3), "N*m": (0.01, 1e3), "rad": (0.01, inf), "rad/s": (0.01, inf),
+    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.001, inf),
+}  # fmt: skip
+"""From where to where people say a unit without a prefix: 0.12 N and 300 Hz, and 2.3 mm, 12 kHz."""
 
-_READABLE = (*_PREFIXED, "rad", "N*m", "N·m", "rad/s")
-"""Those that `readable` prefixes."""
+_FORCES = {"N*m": (0.01, 1e6), "N": (0.001, 1e6)}
+"""The same of units that begin so: stiffness and damping of a wheel, and of a handle."""
 
 _FAR = 1e4
 """How many times the smaller end of an interval the larger is, for both to have the prefix of the smaller."""
-
-_NO_EXPONENT = ("N*m", "N·m", "rad")
-"""How units begin that have a prefix in the place of an exponent: those of torques, and radians."""
 
 
 def unit_text(unit: str) -> str:
@@ -48,7 +49,11 @@ def in_words(key: str) -> str:
 
 
 def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) -> str:
-    """A value with its unit, to `digits` significant digits: 22.4e-6 m is "22.4 µm"."""
+    """A value with its unit, to `digits` significant digits, as people say it: 22.4e-6 m is "22.4 µm".
+
+    The one place where a number and its unit become text: an angle is in the unit that was typed, and where
+    people prefix a unit 1 to 999 stand before the point.
+    """
     if value is None:
         return "none"
     if isinstance(value, Interval):
@@ -62,6 +67,11 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()
 
 
+def told_quantity(value: float | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:
+    """The same with the unit of a quantity of the glossary: "0.4 N·m/deg"."""
+    return shown(value, GLOSSARY[name].unit_for(motion), digits)
+
+
 def _between(value: Interval, unit: str, digits: int) -> str:
     """Both ends with one prefix: that of the smaller one, unless it is 0 or far below the other."""
     factor, unit = spoken(unit)
@@ -69,91 +79,25 @@ def _between(value: Interval, unit: str, digits: int) -> str:
     small, large = sorted(abs(end) for end in ends)
     least = small if small and large < _FAR * small else large
     power, name = _prefix(least, unit, digits)
-    return f"{' … '.join(f'{end / 10.0**power:.{digits}g}' for end in ends)} {name}".rstrip()
+    return f"{' … '.join(_rounded(end / 10.0**power, digits) for end in ends)} {name}".rstrip()
 
 
 def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
-    if number == 0:
-        return 0, unit_text(unit)
-    if unit not in _PREFIXED:
-        return _instead_of_exponent(number, unit, digits)
-    rounded = float(f"{abs(number):.{digits}g}")
-    power = 3 * floor(floor(log10(rounded)) / 3)
-    if (unit == "m" and power > 0) or (unit == "N" and 0.01 <= rounded < 1000) or not -9 <= power <= 9:
-        return 0, unit  # nobody says kilometres here, nor 120 mN for 0.12 N
-    return power, PREFIXES[power] + unit
-
-
-def _instead_of_exponent(number: float, unit: str, digits: int) -> tuple[int, str]:
-    """77.2 µN·m·s/deg for what would be 7.72e-05."""
-    power = 3 * floor(log10(abs(number)) / 3)
-    if "e-" not in f"{number:.{digits}g}" or not unit.startswith(_NO_EXPONENT) or power not in PREFIXES:
-        return 0, unit_text(unit)
-    return power, PREFIXES[power] + unit_text(unit)
-
-
-def told(value: float | Exact | Interval, unit: str, digits: int = 6) -> str:
-    """A value to `digits` significant digits in this unit, an angle in the unit that was typed."""
-    factor, unit = spoken(unit)
-    if isinstance(value, Interval):
-        ends = f"{float(value.low) * factor:g} … {float(value.high) * factor:g}"
-        return f"{ends} {unit_text(unit)}".rstrip()
-    number = float(value) * factor
-    power, name = _instead_of_exponent(number, unit, digits) if number else (0, unit_text(unit))
-    return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()
+    """The power of ten of a prefix, and the unit with it."""
+    size, name = float(f"{abs(number):.{digits}g}"), unit_text(unit)
+    plain = unit.replace("·", "*")
+    begins = (bounds for begin, bounds in _FORCES.items() if plain.startswith(begin))
+    least, most = _AS_IT_IS.get(plain) or next(begins, (0.0, inf))
+    power = 3 * floor(floor(log10(size)) / 3) if size and not least <= size < most else 0
+    if name == "kg" and power:
+        return power, f"{PREFIXES.get(power + 3, '')}g"
+    return (power, f"{PREFIXES[power]}{name}") if power in PREFIXES else (0, name)
 
 
 def _rounded(number: float, digits: int) -> str:
     """So many significant digits; 490, and not 4.9e+02."""
     text = f"{number:.{digits}g}"
     return f"{float(text):.0f}" if "e+" in text and abs(number) < 1e6 else text
-
-
-def told_quantity(value: float | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:
-    """The same with the unit of a quantity of the glossary: "0.4 N·m/deg"."""
-    return told(value, GLOSSARY[name].unit_for(motion), digits)
-
-
-def readable(value: float, unit: str, digits: int = 4) -> str:
-    """A value with its unit; a prefix replaces an exponent and noughts: "0.15 J", and "1.5 mJ"."""
-    factor, unit = spoken(unit)
-    value *= factor
-    power, name = _readable_prefix(value, unit, digits)
-    return f"{value / 10.0**power:.{digits}g} {name}".rstrip()
-
-
-def alike(unit: str, values: Sequence[float], digits: Sequence[int]) -> tuple[str, ...]:
-    """Values of one line as `readable` has them, each to its digits; torques and angles with one prefix.
-
-    It is that of the smallest value that is not 0, unless another is far above.
-    """
-    factor, said = spoken(unit)
-    numbers = [value * factor for value in values]
-    sizes = sorted(abs(number) for number in numbers if number)
-    if not sizes or sizes[-1] >= _FAR * sizes[0] or not said.startswith(_NO_EXPONENT):
-        return tuple(readable(value, unit, n) for value, n in zip(values, digits, strict=True))
-    power, name = _readable_prefix(sizes[0], said, min(digits))
-    return tuple(
-        f"{_rounded(number / 10.0**power, n)} {name}" for number, n in zip(numbers, digits, strict=True)
-    )
-
-
-def _readable_prefix(value: float, unit: str, digits: int) -> tuple[int, str]:
-    text = f"{value:.{digits}g}"
-    is_long = "e" in text or 0.0 < abs(value) < 0.01
-    power = 3 * floor(log10(abs(value)) / 3) if is_long and unit in _READABLE else 0
-    if power in PREFIXES and power:
-        return power, f"{PREFIXES[power]}{unit_text(unit)}"
-    return _instead_of_exponent(value, unit, digits) if value else (0, unit_text(unit))
-
-
-def in_unit(value: float | None, unit: str) -> str:
-    """A value of six digits, a tiny one with a prefix; "none" and "any" for what is no number."""
-    if value is None:
-        return "none"
-    if value == inf:
-        return "any"
-    return readable(value, unit, 6) if "e-" in f"{value * spoken(unit)[0]:.6g}" else told(value, unit)
 
 
 def outward_decimal(value: float, more: bool, digits: int = 4) -> float:
@@ -188,8 +132,8 @@ def shown_at_least(value: float | None, unit: str, digits: int = 4) -> str:
 
 
 def enough(value: float | None, unit: str) -> str:
-    """`in_unit` of a value from which on something holds, never rounded down."""
-    return in_unit(at_least(value, unit), unit)
+    """`shown` to six digits of a value from which on something holds, never rounded down."""
+    return shown(at_least(value, unit), unit, 6)
 
 
 def in_a_table(value: float, digits: int = 4) -> str:

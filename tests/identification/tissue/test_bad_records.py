@@ -132,7 +132,7 @@ def test_units_off_by_a_thousand(factor):
 def test_a_coarse_position_is_remarked():
     """Steps of 0.2 mm leave more than the noise does; of 1 µm they do not."""
     t, x, f = record()
-    assert any("in steps of 0.0002" in r for r in fitted(t, np.rint(x / 2e-4) * 2e-4, f).remarks)
+    assert any("in steps of 200 µm" in r for r in fitted(t, np.rint(x / 2e-4) * 2e-4, f).remarks)
     assert not fitted(t, np.rint(x / 1e-6) * 1e-6, f).remarks
 
 

@@ -25,7 +25,6 @@ from zwidth.cli.page import (
     grid,
     headline,
     items,
-    joules,
     more_with_all,
     motion_in_short,
     motion_lines,
@@ -68,7 +67,7 @@ def print_verdict(
     `ranges` is what holds over the ranges of a device of the catalogue.
     """
     with page() as out:
-        out.print(_headline(verdict))
+        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
         if ranges is not None:
             blocks(out, _over(ranges, in_full))
         (_all if in_full else _few)(out, verdict, ranges is not None)
@@ -98,6 +97,7 @@ def _few(out: Console, verdict: Verdict, over_ranges: bool) -> None:
 
 
 def _to_do(verdict: Verdict) -> Iterator[Row]:
+    yield from advice_rows(verdict.advice, verdict.is_proved, verdict.claim)
     rows = dict(verdict.rows())
     first = [rows[name] if name == "limit" else f"{name}: {rows[name]}" for name in _FIRST if name in rows]
     if first:
@@ -108,7 +108,6 @@ def _to_do(verdict: Verdict) -> Iterator[Row]:
         yield "but", Text("; ".join(verdict.demand), style="yellow")
     if _SLOW in rows:
         yield "slow hands", f"{_SLOW.removeprefix('slower hands ')} {rows[_SLOW]}"
-    yield from advice_rows(verdict.advice, verdict.is_proved)
 
 
 def _not_ideal(verdict: Verdict) -> Iterator[Row]:
@@ -139,20 +138,6 @@ def _all(out: Console, verdict: Verdict, over_ranges: bool) -> None:
     beside_the_loop = intervals(verdict.scope, verdict.outcome)
     assumed = (line for line in verdict.assumptions if line != beside_the_loop)
     section(out, "assumes", items((*assumed, *verdict.demand), "dim"))
-
-
-def _headline(verdict: Verdict) -> Padding:
-    return headline(verdict.outcome, TOLD[verdict.outcome].terminal, _claim(verdict))
-
-
-def _claim(verdict: Verdict) -> str:
-    if verdict.outcome != "active":
-        return verdict.claim
-    if verdict.scope.transmission == "as given":  # no motion of two bodies is more than replayed
-        return verdict.claim
-    if verdict.witness is None:
-        return f"{verdict.claim} No motion that shows it was found short enough to be written down."
-    return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 
 
 def _loop(verdict: Verdict, over_ranges: bool) -> Iterator[Row]:

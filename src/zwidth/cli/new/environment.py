@@ -18,7 +18,7 @@ from zwidth.model.specification.read import load_device, read_tables
 from zwidth.model.specification.table import Table, quoted, suggestion
 from zwidth.quantity.exact import ends
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import readable
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 __all__ = ["QUESTIONS", "described"]
@@ -139,7 +139,7 @@ def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, s
         return with_unit(asked.ask.sure(question), unit), ""
     factor, told = spoken(unit)
     deepest = f"{float(ends(most)[0] / stiff) * factor:.9g} {told}"
-    limit = readable(float(ends(most)[0]), asked.unit("peak"))
+    limit = shown(float(ends(most)[0]), asked.unit("peak"))
     offered = f"{question.ask}; Enter for {deepest}, where it is {limit}, the largest of {asked.whose}"
     answer = asked.ask(
         question._replace(ask=offered, enter=deepest, unknown=f"{deepest}, then.", needed=False)

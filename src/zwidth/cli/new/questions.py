@@ -16,7 +16,7 @@ from zwidth.errors import InputError
 from zwidth.model.specification.table import COMMAND_LINE, located
 from zwidth.model.specification.write import toml
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.text import readable, shown
+from zwidth.quantity.text import shown
 
 T = TypeVar("T")
 
@@ -200,7 +200,7 @@ def understood(number: Exact | Interval, unit: str) -> str:
         return shown(number, unit)
     value = float(number)
     degrees = f" ({math.degrees(value):.6g}°)" if unit == "rad" else ""
-    return readable(value, unit, 6) + degrees
+    return shown(value, unit, 6) + degrees
 
 
 class Row(NamedTuple):

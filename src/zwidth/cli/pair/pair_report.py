@@ -49,17 +49,18 @@ def print_pair(verdict: PairVerdict | HeldVerdict, in_full: bool = False) -> Non
     """Print the report on standard output."""
     witness = verdict.witness if verdict.outcome == "active" else None
     with page() as out:
-        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, _claim(verdict, witness)))
+        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
         (_all if in_full else _few)(out, verdict, witness)
 
 
 def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> None:
     """What binds and what to change; the pair, and what is assumed of it."""
     rows = dict(verdict.rows())
-    do: list[Row] = [("limit", rows["limit"])] if rows["limit"] != _NOTHING else []
+    do: list[Row] = [*advice_rows(verdict.advice, verdict.passive, verdict.claim)]
+    if rows["limit"] != _NOTHING:
+        do.append(("limit", rows["limit"]))
     if witness is not None:
         do.append(("the motion", _motion_in_short(witness)))
-    do += advice_rows(verdict.advice, verdict.passive)
     if not verdict.advice and "largest stiffness" in rows:
         do.append(("stiffness", f"largest: {rows['largest stiffness']}"))
     if "largest compensation" in rows:
@@ -79,12 +80,6 @@ def _all(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness 
     section(out, title, lines)
     section(out, "with something else changed", items(at.text for at in verdict.stiffness_elsewhere))
     section(out, "assumes", items(verdict.small_print(), "dim"))
-
-
-def _claim(verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> str:
-    if verdict.outcome != "active" or witness is not None:
-        return verdict.claim
-    return f"{verdict.claim} No motion that shows it was found short enough to be written down."
 
 
 def _arms(pair: Pair) -> Iterator[tuple[str, str]]:

@@ -16,6 +16,7 @@ from zwidth.model.device import catalogue
 from zwidth.model.environment import Wall
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.scope import TOLD
+from zwidth.quantity.text import shown
 
 _SOFT, _STIFF, _QUICK = "300", "770", "2.6 kHz"
 
@@ -73,7 +74,8 @@ def _claim(out: Console, verdict: LinearVerdict) -> None:
 def _passive(out: Console) -> None:
     verdict = _verdict(_SOFT)
     _claim(out, verdict)
-    out.print(Text(f"largest passive stiffness  {verdict.max_stiffness:g} N/m, limited by {verdict.limit}"))
+    largest = shown(verdict.max_stiffness, "N/m", 6)
+    out.print(Text(f"largest passive stiffness  {largest}, limited by {verdict.limit}"))
 
 
 def _active(out: Console) -> None:

@@ -257,7 +257,7 @@ def _of_controllers(path: Path, turns: int, rate: str | None) -> MatrixWall:
     if turns not in (0, len(one.stiffness) - 3):
         raise InputError(f"{name}: it has three rotations; a hand in the plane has one")
     if rate is None and one.rate is not None:
-        hertz = f"{float(one.rate):g} Hz"
+        hertz = shown(float(one.rate), "Hz", 6)
         raise InputError(f'{name}: its controller runs at {hertz}; give --rate "{hertz}"')
     return one.wall(turns)
 
@@ -302,8 +302,8 @@ def wall_in_words(wall: Wall | MatrixWall) -> str:
 
     if isinstance(wall, Wall):
         damper = float(wall.damping)  # type: ignore[arg-type]  # no interval: an arm refuses them
-        more = f", {damper:g} N·s/m" if damper else ""
-        return f"{float(wall.stiffness):g} N/m{more} in every direction"  # type: ignore[arg-type]
+        more = f", {shown(damper, 'N*s/m', 6)}" if damper else ""
+        return f"{shown(float(wall.stiffness), 'N/m', 6)}{more} in every direction"  # type: ignore[arg-type]
     import numpy as np
 
     units = ("N, m, rad", "N, m, s, rad") if wall.turns else ("N/m", "N·s/m")

@@ -212,7 +212,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
             return nothing(self.recording.time)
         at, time = shown(self.frequency, "Hz", 3), self.recording.time[self.seen.vibration.around]
         if time.size < self.recording.time.size // 2:
-            at += f" from {time[0]:.4g} s to {time[-1]:.4g} s"
+            at += f" from {shown(time[0], 's', 4)} to {shown(time[-1], 's', 4)}"
         if self.cause is None:
             first, second, *_ = self.likely
             return f"It shakes at {at}; the data do not say why: {first} or {second}, or something else."

@@ -92,7 +92,7 @@ class JointVerdict:
     @answers()
     def claim(self) -> str:
         """In a sentence."""
-        return self.verdict.claim
+        return f"{self.verdict.found}."
 
     @property
     @answers()
@@ -142,7 +142,7 @@ class JointVerdict:
         if verdict.criterion.slips:
             return "kd in the drive"
         if verdict.violation is not None:
-            return f"at {verdict.violation.frequency:.3g} Hz"
+            return f"at {shown(verdict.violation.frequency, 'Hz', 3)}"
         return "" if verdict.passive else verdict.limit.partition(":")[0]
 
     @property

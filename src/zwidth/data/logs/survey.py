@@ -13,7 +13,7 @@ from zwidth.data.logs.runs import Cutter, Segment, settled
 from zwidth.data.logs.sensors import FEWEST, Grid, Jumps, Stops, at_ends, grid_of, offset_on, on_grid
 from zwidth.data.logs.table import Finding
 from zwidth.errors import InputError
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.native.compiled import Array
@@ -282,7 +282,8 @@ def position_findings(survey: Survey, wrap: float, unit: str) -> Iterator[Findin
         times = grid.step / stated
         multiple = times > 1.5 and abs(times - round(times)) < 1e-3
         whole = f", {round(times)} times that: the steps between are never seen" if multiple else ""
-        text = f"resolution {told(grid.step, unit)} by the positions; stated is {told(stated, unit)}{whole}"
+        seen, given = shown(grid.step, unit, 6), shown(stated, unit, 6)
+        text = f"resolution {seen} by the positions; stated is {given}{whole}"
         yield Finding(kind="stated resolution", text=text)
     else:
         how = (
@@ -290,7 +291,7 @@ def position_findings(survey: Survey, wrap: float, unit: str) -> Iterator[Findin
             if stated is None
             else "as stated" + (", and by the positions" if found else "")
         )
-        yield Finding(kind="resolution", text=f"resolution {told(grid.step, unit)} {how}")
+        yield Finding(kind="resolution", text=f"resolution {shown(grid.step, unit, 6)} {how}")
     if grid is not None and grid.offset:
         text = f"the positions are whole steps plus {grid.offset:.4g} {unit}, which is taken off"
         yield Finding(kind="offset", text=text)

@@ -15,7 +15,7 @@ from zwidth.data.tissue.model import Model, Record
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import decaying, samples
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import quantity_unit, shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -47,14 +47,14 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
         )
 
 
-def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
-    """Why intervals are too narrow: most of what the fit leaves [N; N·m] may be the position's steps."""
+def coarse(position: Array, stiffness: float, rms: float, unit: str) -> Iterator[str]:
+    """Why intervals are too narrow: most of what the fit leaves [N; N·m] may be steps of the position."""
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
-            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may come "
-            "from them: the intervals take the position for exact and are too narrow; move further, or read "
-            "it more finely"
+            f"the position is read in steps of {shown(grid.step, unit, 3)}, and most of what the fit leaves "
+            "may come from them: the intervals take the position for exact and are too narrow; move further, "
+            "or read it more finely"
         )
 
 
@@ -118,9 +118,8 @@ def _lateness(kind: str, late: float) -> Finding:
         )
         return Finding(kind="force early", text=text)
     how = "a delay" if kind == "delay" else "a filter of the first order with this time constant"
-    text = (
-        f"the force is recorded {1e3 * late:.3g} ms late, or the model has too few elements; fitted as {how}"
-    )
+    by = shown(late, "s", 3)
+    text = f"the force is recorded {by} late, or the model has too few elements; fitted as {how}"
     return Finding(kind="force late", text=text)
 
 

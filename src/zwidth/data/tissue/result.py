@@ -22,7 +22,7 @@ from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import shown, unit_text
 from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
@@ -201,7 +201,8 @@ class TissueFit(Documented):
             if self.motion == "linear" and not self.units_stated:
                 said.extend(unlikely_units(self._at_once, float(np.abs(self.position).max())))
             if self.response == "force":
-                said.extend(coarse(self.position, self._at_once, self.rms))
+                length = GLOSSARY["position"].unit_for(self.motion)
+                said.extend(coarse(self.position, self._at_once, self.rms, length))
         return tuple(said)
 
     @property
@@ -302,7 +303,7 @@ class TissueFit(Documented):
         noise = "white noise" if not self.noise_order else f"noise of order {self.noise_order}"
         return (
             f"{self.model.name}, {self.residuals.size} samples: r² = {self.r_squared:.6f}, residuals "
-            f"{self.rms:.3g} {unit_text(self._unit('offset'))} RMS, {noise}, condition {self.condition:.3g}"
+            f"{shown(self.rms, self._unit('offset'), 3)} RMS, {noise}, condition {self.condition:.3g}"
         )
 
     def report(self) -> Iterable[Part]:

@@ -27,7 +27,7 @@ from zwidth.passivity.scope import COLOUR
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Interval, RealLike, ends
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import quantity_unit, shown, to_json, told, told_quantity
+from zwidth.quantity.text import quantity_unit, shown, to_json, told_quantity
 from zwidth.quantity.units import parse, parse_number
 from zwidth.showing import Headline
 from zwidth.writing import check_target, writing_whole
@@ -174,7 +174,7 @@ class Emitted(Result):
         elif self.judged.counted and self.machine.law.step > 0:
             actuator += "; converter steps are"
         unit = "counts" if self.machine.law.resolution > 0 else self.device.unit("position")
-        to = told(high, unit, 10)
+        to = shown(high, unit, 10)
         uncounted = () if self.judged.counted else (self.judged.statement,)
         return (
             *uncounted,

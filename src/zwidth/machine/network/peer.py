@@ -251,9 +251,9 @@ class LinkReport(Documented):
         """In a few words."""
         if not self.received:
             return f"what comes is of {_OTHER_VERSION}" if self.other_version else "nothing has come"
-        waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
+        waiting = f", silent for {shown(self.silent, 's', 2)}" if self.silent > _SILENT else ""
         echoed = math.isfinite(self.round_trip[0])
-        trip = f", {1e3 * self.round_trip[0]:.3g} ms there and back" if echoed else ""
+        trip = f", {shown(self.round_trip[0], 's', 3)} there and back" if echoed else ""
         return f"{self.rate:.4g} per second, {self._share} lost{trip}{waiting}"
 
     def rows(self) -> list[list[str]]:
@@ -264,7 +264,7 @@ class LinkReport(Documented):
             ["foreign", f"{self.foreign} datagrams{more}"],
             ["there and back", f"{self._trips}: median, 99 %"],
             ["energy", f"{shown(self.energy_sent, 'J')} sent, {shown(self.energy_received, 'J')} received"],
-            ["silent", f"for {self.silent:.3g} s" if self.received else "from the start"],
+            ["silent", f"for {shown(self.silent, 's', 3)}" if self.received else "from the start"],
         ]
 
 

@@ -28,7 +28,7 @@ from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
 from zwidth.quantity.answered import answered, answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import shown
 from zwidth.showing import Table
 
 Nanoseconds = NDArray[np.int64]
@@ -209,10 +209,10 @@ class StiffnessCost:
 
     def table(self) -> Table:
         """A row for each."""
-        late = f"{1e3 * self.lateness:.3g} ms"
+        late = shown(self.lateness, "s", 3)
         names = ("as given", f"every period longer by {late}", f"and every force later by {late}")
         unit = GLOSSARY["stiffness"].unit_for(self.motion)
-        rows = [(name, in_unit(value, unit)) for name, value in zip(names, self.largest, strict=True)]
+        rows = [(name, shown(value, unit, 6)) for name, value in zip(names, self.largest, strict=True)]
         return Table(rows=rows, caption=f"largest passive stiffness, contact {self.contact}")
 
 

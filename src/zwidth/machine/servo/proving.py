@@ -28,6 +28,7 @@ from zwidth.passivity.wording import of_transmission
 from zwidth.quantity.answered import answered
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.text import shown
 from zwidth.showing import Part
 
 Decide = Callable[[Device, Environment], Verdict]
@@ -72,7 +73,7 @@ def claimed(verdict: Verdict) -> str:
 def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
     """Refuse to serve what has no proof."""
     if verdict.outcome not in SERVED_OUTCOMES:
-        late, exchange = (f"{1e6 * float(t):g} µs" for t in measured.supposed)
+        late, exchange = (shown(float(t), "s", 6) for t in measured.supposed)
         raise NotProved(
             verdict,
             f"this is not served, it is {verdict.outcome}: {verdict.claim} That is as measured here, "

@@ -17,6 +17,7 @@ from zwidth.machine.servo.safety import ASKED, BAD_ANSWER, DONE, REASONS, RUNNIN
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answered, rows_of
 from zwidth.quantity.documented import Documented
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -87,7 +88,6 @@ class ServoReport(Served):
         "has always put in so much at least, but for what the handle had in its motion",
         key="hand_put_in_at_least",
         unit="J",
-        row="least that the hand had put in, as the encoder saw it",
     )
     met_hardware: bool = answered("False where only an emulator of this device was met", only_shown=True)
     recorded: Recorded | None = answered("what became of the recording", default=None)
@@ -104,8 +104,7 @@ class ServoReport(Served):
         if self.verdict is not None:
             yield claimed(cast("Verdict", self.verdict))
         yield Table(rows=[row for row in rows_of(self) if row[1] != "none"], lefts=1)
-        if self.least is None:
-            yield "The encoder does not see the motor: what energy the actuator gave is not known."
+        yield _balance(self.least)
         if self.recorded is not None:
             yield self.recorded.describe()
         if self.granted is not None:
@@ -113,6 +112,16 @@ class ServoReport(Served):
             yield from (f"{answer.wish}: not granted: {answer.told}" for answer in refused)
         if not self.met_hardware:
             yield "Tried against an emulator or a simulation of this device only, not against the device."
+
+
+def _balance(least: float | None) -> str:
+    """What the least that the hand had put in [J] says, in words."""
+    if least is None:
+        return "The encoder does not see the motor: what energy the actuator gave is not known."
+    most = "the handle's own motion aside, as the encoder saw it."
+    if least >= 0:
+        return f"At no time had the hand got more energy out than it had put in, {most}"
+    return f"At some time the hand may have got {shown(-least, 'J')} more out than it had put in, {most}"
 
 
 def report_of(

@@ -23,6 +23,7 @@ from zwidth.errors import InputError
 from zwidth.model.device.device import Device
 from zwidth.quantity.exact import Exact, as_parameter, ends
 from zwidth.quantity.parameter import Certain, Given, Parametric, exact
+from zwidth.quantity.text import shown
 
 
 class Actuation(NamedTuple):
@@ -118,7 +119,7 @@ class FirstOrderLag(Parametric, Amplifier):
         return CurrentAmplifier().actuation(device)._replace(lag=float(self.time_constant))
 
     def describe(self) -> str:
-        return f"first-order lag of {float(self.time_constant):.6g} s"
+        return f"first-order lag of {shown(float(self.time_constant), 's', 6)}"
 
 
 def _known(device: Device, key: str) -> float:
@@ -186,8 +187,8 @@ def _force_resolution(device: Device, stiffness: Given | None) -> ActuatorCheck:
     step = ends(device.force_resolution)[1]
     ratio = count / step
     text = (
-        f"one encoder count is {float(count):.3g} {unit} of force, the converter's step "
-        f"{float(step):.3g} {unit}: {float(ratio):.3g} to 1"
+        f"one encoder count is {shown(float(count), unit, 3)} of force, the converter's step "
+        f"{shown(float(step), unit, 3)}: {float(ratio):.3g} to 1"
     )
     verdict = "fine" if ratio >= FINE else "not ten times finer, so the converter quantizes too"
     return _check(name, unit, count, step, ratio >= FINE, f"{text}, {verdict}")

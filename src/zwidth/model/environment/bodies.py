@@ -30,6 +30,7 @@ from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment, RationalFunction, add, multiply
 from zwidth.model.environment.wall import NEGATIVE_SPRING
 from zwidth.quantity.parameter import Certain, CertainOrNone, Parametric, exact, plain, word
+from zwidth.quantity.text import shown
 
 # How a body M v̇ + B v + K y = f is stepped with the samples: what each integrator makes of a force.
 #
@@ -325,7 +326,7 @@ class VirtualBody(Parametric):
 
     def describe(self) -> str:
         """The body with its numbers, on one line."""
-        parts = [f"{self.mass:.6g} kg"]
-        parts += [f"{self.damping:.6g} N·s/m"] if self.damping else []
-        parts += [f"{self.stiffness:.6g} N/m"] if self.stiffness else []
+        parts = [shown(self.mass, "kg", 6)]
+        parts += [shown(self.damping, "N*s/m", 6)] if self.damping else []
+        parts += [shown(self.stiffness, "N/m", 6)] if self.stiffness else []
         return f"virtual body, {', '.join(parts)}, {self.integration}"

@@ -24,7 +24,7 @@ from zwidth.model.environment.wall import NEGATIVE_SPRING
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import Certain, Numbers, exact, listed, plain, read_number
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 MOST_POINTS = 10_000
 """More points than any force profile is measured with."""
@@ -311,7 +311,7 @@ class HuntCrossley(Environment):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line, in linear or rotary units."""
-        k = told(self.stiffness, self.unit_of("stiffness", motion))
+        k = shown(self.stiffness, self.unit_of("stiffness", motion), 6)
         parts = [k, f"exponent {self.exponent:g}"]
         if self.dissipation:
             parts.append(with_unit("dissipation", self.dissipation, motion))

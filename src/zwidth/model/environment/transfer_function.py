@@ -26,6 +26,7 @@ from zwidth.model.environment.environment import Box, Environment, RationalFunct
 from zwidth.model.environment.system import LinearSystem, is_system, read_system
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import CertainOrNone, Reads, exact, part
+from zwidth.quantity.text import shown
 
 _SAME_PERIOD = Fraction(1, 10**9)
 """Two sample periods that differ by less, relatively, are one."""
@@ -96,7 +97,7 @@ class PulseTransferFunction(Environment):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line; coefficients carry no unit of their own."""
-        period = "" if self.sample_period is None else f", T = {float(self.sample_period):.6g} s"
+        period = "" if self.sample_period is None else f", T = {shown(self.sample_period, 's', 6)}"
         return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
 
     def decided_by_corners(self, box: Box) -> bool:

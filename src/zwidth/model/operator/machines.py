@@ -27,7 +27,7 @@ from zwidth.model.operator.operator import (
 )
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import parameter
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.model.operator.operator import Signal
@@ -115,7 +115,7 @@ class ConstantForce(ParametricOperator):
         return Signals(force=np.full(len(times) - 1, self.force))
 
     def describe(self, motion: str = "linear") -> str:
-        return f"constant force, {told(self.force, FORCE.unit_for(motion))}"
+        return f"constant force, {shown(self.force, FORCE.unit_for(motion), 6)}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import Parametric, parameter, parameters_of
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -143,7 +143,7 @@ class ParametricOperator(Parametric, Operator):
     def describe_parameters(self, motion: str = "linear") -> str:
         """The numbers with their units, in linear or rotary units."""
         return ", ".join(
-            f"{name.replace('_', ' ')} {told(getattr(self, name), quantity.unit_for(motion))}"
+            f"{name.replace('_', ' ')} {shown(getattr(self, name), quantity.unit_for(motion), 6)}"
             for name, quantity in self.parameters().items()
         )
 

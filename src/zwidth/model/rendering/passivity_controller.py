@@ -35,6 +35,7 @@ from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.parameter import Certain, CertainOrNone, Parametric, Reads, exact, flag, parameter, word
+from zwidth.quantity.text import shown
 
 # How far a controller may go: a number, what the device or the body pays for, or "unlimited" in words.
 #
@@ -225,7 +226,7 @@ class PassivityController(RenderingLaw):
             parts.append(f"at most {self.with_unit('largest_force', motion)}")
         parts += [word for word, said in (("device credited", self.credit), ("resets", self.resets)) if said]
         if self.forgetting is not None:
-            parts.append(f"forgets credit in {float(self.forgetting):g} s")
+            parts.append(f"forgets credit in {shown(float(self.forgetting), 's', 6)}")
         if self.reference == "spring":
             parts.append("the spring's energy as reference")
         return f"passivity controller ({', '.join(parts)})"

@@ -23,6 +23,7 @@ from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import CertainOrNone, Reads, exact, part, word
+from zwidth.quantity.text import shown
 
 BRAKING_PULSE = 12.0
 
@@ -270,11 +271,11 @@ class EventTransient(RenderingLaw):
         if self.amplitude is not None:
             parts.append(self.with_unit("amplitude", motion))
         if self.kind == "decaying":
-            parts.append(f"{self._own('frequency'):g} Hz, {self._own('time_constant'):g} s")
+            parts += [shown(self._own("frequency"), "Hz", 6), shown(self._own("time_constant"), "s", 6)]
         if self.record is not None:
             parts.append(f"record of {len(self.record)} samples")
         elif self.kind != "decaying" or self.duration is not None:
-            parts.append(f"for {self._own('duration'):g} s")
+            parts.append(f"for {shown(self._own('duration'), 's', 6)}")
         return f"transient at entry ({', '.join(parts)}) on {self.velocity.describe(motion)}"
 
 

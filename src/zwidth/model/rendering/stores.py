@@ -27,7 +27,7 @@ from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import CertainOrNone, exact, flag
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 ENERGY_TANK = 21.0
 
@@ -99,7 +99,7 @@ class EnergyTank(RenderingLaw):
             ("refill", self.refill, unit, " per J"),
             ("at most", self.largest_damping, unit, ""),
         )
-        parts = [f"{word} {told(value, of)}{more}" for word, value, of, more in said if value is not None]
+        parts = [f"{word} {shown(value, of, 6)}{more}" for word, value, of, more in said if value is not None]
         return f"energy tank ({', '.join(parts)})" if parts else "energy tank"
 
 

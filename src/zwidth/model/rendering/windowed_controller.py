@@ -35,7 +35,7 @@ from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import PLAIN, Certain, CertainOrNone, Count, exact, part, plain
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 WINDOWED_CONTROLLER = 2.0
 
@@ -152,7 +152,7 @@ class WindowedController(RenderingLaw):
         of = self.with_unit("largest_damping", motion) or "b of the device"
         return (
             f"windowed passivity controller ({self.window} samples, floor "
-            f"{told(slowest, self._unit('slowest', motion), 3)}, at most {float(self.share):g} of {of})"
+            f"{shown(slowest, self._unit('slowest', motion), 3)}, at most {float(self.share):g} of {of})"
         )
 
 

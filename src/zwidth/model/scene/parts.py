@@ -26,7 +26,7 @@ from zwidth.model.scene.scene import Scene
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Certain, exact, read_number
-from zwidth.quantity.text import readable, told_quantity
+from zwidth.quantity.text import shown, told_quantity
 from zwidth.showing import Part as Shows
 from zwidth.showing import Shown, Table
 
@@ -56,7 +56,7 @@ class Line(NamedTuple):
         """The mass of a line, or how far the one of a body gives way, in words."""
         gives = self.keeps == "mass"
         if motion == "rotary":
-            return readable(1 / self.stiffness, "rad/N/m") if gives else readable(self.mass, "kg*m^2")
+            return shown(1 / self.stiffness, "rad/N/m") if gives else shown(self.mass, "kg*m^2")
         return f"{1e3 / self.stiffness:.4g} mm/N" if gives else f"{1e3 * self.mass:.4g} g"
 
     @property
@@ -106,7 +106,7 @@ class Cut(Shown):
                         line.name,
                         line.in_place_of or "—",
                         told_quantity(line.impedance, "wave_impedance", self.motion, 4),
-                        f"{1e3 * float(line.delay):.4g} ms",
+                        shown(float(line.delay), "s", 4),
                         told_quantity(line.stiffness, "stiffness", self.motion, 4),
                         line.adds(self.motion),
                     ]

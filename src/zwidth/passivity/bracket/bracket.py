@@ -24,7 +24,7 @@ from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import at_least, at_most, in_unit, in_words
+from zwidth.quantity.text import at_least, at_most, in_words, shown
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,7 +132,7 @@ class Bracket(Result):
             given = "in the time given" if self.cut_by_time else "with the effort given"
             return f"{name}: nothing was decided {given}"
         ends = self.outward((self.proved_passive, self.proved_active))
-        passive, active = (in_unit(value, self.unit) for value in ends)
+        passive, active = (shown(value, self.unit, 6) for value in ends)
         beyond = f"; {self.beyond}" if self.beyond else ""
         if self.proved_active is None:
             return f"{name}: {passive} is proved passive, and nothing is refuted{beyond}"

@@ -28,7 +28,7 @@ from zwidth.passivity.formulas.hypotheses import number
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import told
+from zwidth.quantity.text import shown
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -112,7 +112,7 @@ class SlopeBounds:
         unit = GLOSSARY["stiffness"].unit_for(motion)
         least = f"{float(self.least) * spoken(unit)[0]:.6g}"
         return (
-            f"every static spring with slopes from {least} to {told(self.greatest, unit)} whose "
+            f"every static spring with slopes from {least} to {shown(self.greatest, unit, 6)} whose "
             "potential is bounded below"
         )
 

@@ -22,7 +22,7 @@ from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact, unit_key
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import exact_text, quantity_unit
+from zwidth.quantity.text import exact_text, quantity_unit, shown
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class EndlessPull(Evidence):
 
     def describe(self) -> str:
         """What is wrong, in words."""
-        return f"beyond an end the spring pulls away with {self.pull:.6g} {self.unit} for ever"
+        return f"beyond an end the spring pulls away with {shown(self.pull, self.unit, 6)} for ever"
 
 
 def refute_spring(device: Device, spring: Environment) -> EndlessPull | None:

@@ -18,7 +18,7 @@ from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Motion, Repeat
-from zwidth.quantity.text import exact_text, quantity_unit, readable
+from zwidth.quantity.text import exact_text, quantity_unit, shown
 
 CERTIFICATE = "zwidth certificate 1"
 VIOLATION = "zwidth violation 1"
@@ -143,7 +143,7 @@ class PairViolation(Evidence):
         """What is violated, in words."""
         if self.frequency is None:
             return "the drive of an arm alone lets it gain, from one reading of its own to the next"
-        return f"at {self.frequency:.6g} Hz some motion of both hands gains in every round"
+        return f"at {shown(self.frequency, 'Hz', 6)} some motion of both hands gains in every round"
 
 
 @dataclass(frozen=True, repr=False)
@@ -198,9 +198,9 @@ class PairWitness(Evidence):
         far = quantity_unit("position", self.pair.motion)
         spans = [float(max(m.positions) - min(m.positions)) for m in (self.leader, self.follower)]
         rounds = f", {self.leader.rounds} rounds" if self.leader.rounds > 1 else ""
-        leader, follower = (readable(span, far, 3) for span in spans)
+        leader, follower = (shown(span, far, 3) for span in spans)
         return (
-            f"a motion of {self.samples} samples{rounds} takes {readable(self.energy, 'J')} out, the "
+            f"a motion of {self.samples} samples{rounds} takes {shown(self.energy, 'J')} out, the "
             f"leader over {leader}, the follower over {follower} in a round"
         )
 

@@ -30,7 +30,7 @@ from zwidth.quantity.balls import as_fraction
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import in_words, told
+from zwidth.quantity.text import in_words, shown
 
 
 def is_passive(pair: Pair) -> bool:
@@ -188,7 +188,7 @@ def _stiffness_at(
         proved = "proved" if any(pair.compensations) else "passive"
         return StiffnessAt(parameter, float(times), None, f"{where} no stiffness is {proved}", pair.motion)
     safe = outward(largest, next(_of_the_coupling(pair)), spoken(unit)[0])
-    text = f"{where} a stiffness of up to {told(safe, unit, 12)} is passive"
+    text = f"{where} a stiffness of up to {shown(safe, unit, 12)} is passive"
     return StiffnessAt(parameter, float(times), largest, text, pair.motion)
 
 

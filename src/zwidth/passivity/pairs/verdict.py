@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.advice import Advice
+from zwidth.passivity.advice import Advice, with_what_to_do
 from zwidth.passivity.pairs.assumed import (
     assumed_of_arms,
     assumed_of_timing,
@@ -35,6 +35,7 @@ from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.wording import UNWRITTEN, takes
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 from zwidth.showing import Lines, Part
@@ -161,14 +162,22 @@ class PairVerdict(PassivityAnswer):
         return "undecided" if self.violation is None and self.motion is None else "active"
 
     @property
-    def claim(self) -> str:
-        """The outcome in a sentence."""
+    def found(self) -> str:
+        """What was found and how much, without its point."""
         if self.outcome == "passive":
             hands = "No motion of two hands, one on each arm, takes energy out of this pair"
-            return f"{hands}{friction_goes_on(self.pair)}."
-        if self.outcome == "active":
-            return "Two hands, one on each arm, can take energy out of this pair, without end."
-        return "Neither a proof nor a motion that takes energy out was found."
+            return f"{hands}{friction_goes_on(self.pair)}"
+        if self.outcome == "undecided":
+            return "Neither a proof nor a motion that takes energy out was found"
+        if self.witness is None:
+            return "Two hands, one on each arm, can take any amount of energy out of this pair"
+        return takes("two hands, one on each arm,", self.witness.energy, "pair", self.witness.duration)
+
+    @cached_property
+    def claim(self) -> str:
+        """What was found, how much, and what to do."""
+        unwritten = f" {UNWRITTEN}" if self.outcome == "active" and self.witness is None else ""
+        return f"{with_what_to_do(self.found, self.advice, self.outcome)}{unwritten}"
 
     @property
     def scope(self) -> Scope:

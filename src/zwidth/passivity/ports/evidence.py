@@ -32,6 +32,7 @@ from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.positive_real import OFFSET, Proof, prove_minors
 from zwidth.passivity.result import Evidence
 from zwidth.quantity.balls import as_fmpq, as_fraction
+from zwidth.quantity.text import shown
 
 
 @dataclass(frozen=True, repr=False)
@@ -100,9 +101,9 @@ class ExtractingInput(Evidence):
 
     def _form(self) -> str:
         if self.kind == "burst":
-            return f"a burst of {self.frequency or 0:.6g} Hz"
+            return f"a burst of {shown(self.frequency or 0, 'Hz', 6)}"
         if self.kind == "polynomial":
-            return f"a polynomial over {float(self.motion.numbers[0]):.4g} s"
+            return f"a polynomial over {shown(float(self.motion.numbers[0]), 's', 4)}"
         return f"{len(self.motion.axes[0])} samples"
 
     def _is_of_input(self) -> bool:

@@ -46,7 +46,7 @@ from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
-from zwidth.quantity.text import exact_text, told
+from zwidth.quantity.text import exact_text, shown
 from zwidth.quantity.units import parse_number
 
 Array = npt.NDArray[np.float64]
@@ -117,10 +117,10 @@ class ToleratedActivity(Result):
         """The numbers as (name, text) for a report."""
 
         def said(value: float | None, otherwise: str) -> str:
-            return otherwise if value is None else f"up to {told(value, self.unit)}"
+            return otherwise if value is None else f"up to {shown(value, self.unit, 6)}"
 
         rows = [
-            (f"below {self.below:g} Hz", said(self.activity, "none is proved") + ", contact kept"),
+            (f"below {shown(self.below, 'Hz', 6)}", said(self.activity, "none is proved") + ", contact kept"),
             ("at any frequency", said(self.with_contact_broken, "none is proved") + ", contact broken too"),
         ]
         if self.hand is not None:
@@ -276,8 +276,8 @@ def _claim(kept: _Proved | None, scope: Scope, unit: str) -> str:
     if kept is None:
         return "Not even every passive hand is proved not to drive this loop; zwidth.check says why."
     return (
-        f"A hand that is passive above {scope.hands.below:g} Hz and gives back at most {told(kept[0], unit)} "
-        "below cannot go on gaining energy from this loop while it keeps contact"
+        f"A hand that is passive above {shown(scope.hands.below, 'Hz')} and gives back at most "
+        f"{shown(kept[0], unit, 6)} below cannot go on gaining energy from this loop while it keeps contact"
         f"{if_friction_goes_on(scope)}."
     )
 

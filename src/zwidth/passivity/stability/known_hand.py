@@ -40,7 +40,7 @@ from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import exact_text, in_unit
+from zwidth.quantity.text import exact_text, shown
 
 _HALVINGS = 8
 """Of the stiffness, in that search."""
@@ -105,11 +105,11 @@ class Stability(Answer):
         """The main numbers as (name, text) for a report."""
         rows = [
             ("spectral radius", f"{self.spectral_radius:.6g}"),
-            ("frequency", in_unit(self.frequency, "Hz")),
+            ("frequency", shown(self.frequency, "Hz", 6)),
         ]
         if self.max_stiffness is not None:
             unit = GLOSSARY["stiffness"].unit_for(self.scope.motion)
-            rows.append(("largest stable stiffness", in_unit(self.max_stiffness, unit)))
+            rows.append(("largest stable stiffness", shown(self.max_stiffness, unit, 6)))
         return rows
 
     def __str__(self) -> str:

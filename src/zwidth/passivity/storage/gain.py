@@ -20,7 +20,8 @@ from zwidth.passivity.storage.storage_function import loop_document
 from zwidth.passivity.storage.value_iteration import ValueIteration
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.witness import FORMAT, rounded_energy
-from zwidth.quantity.text import readable
+from zwidth.passivity.wording import size
+from zwidth.quantity.text import shown
 
 _NEAREST = 40  # halvings of a count by which a hand on the upper edge of a cell may have to stay below it
 
@@ -103,9 +104,8 @@ class Gain(Evidence):
         """The motion in a sentence."""
         part = self.motion.repeats[0]
         return (
-            f"a cycle of {part.last - part.first} samples, to {readable(self.depth, self.unit)} at up to "
-            f"{readable(self.peak_speed, f'{self.unit}/s')}, extracts "
-            f"{readable(self.energy_per_cycle, 'J')} in each round"
+            f"a cycle of {part.last - part.first} samples, {size(self.depth, self.peak_speed, self.unit)}, "
+            f"extracts {shown(self.energy_per_cycle, 'J')} in each round"
         )
 
 

@@ -26,7 +26,7 @@ from zwidth.passivity.storage.value_iteration import (
     checked_effort,
     time_limit,
 )
-from zwidth.passivity.wording import claim_of_passivity
+from zwidth.passivity.wording import claim_of_a_motion, claim_of_passivity
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
@@ -72,9 +72,9 @@ class AvailableStorage(PassivityAnswer):
     def claim(self) -> str:
         """The outcome in a sentence."""
         if self.outcome == "passive":
-            return claim_of_passivity(self.scope, False)
+            return f"{claim_of_passivity(self.scope, False)}."
         if self.witness is not None:
-            return f"A motion of the hand takes energy out of this loop: {self.witness.describe()}."
+            return f"{claim_of_a_motion(self.witness)}."
         if self.cut_by_time:
             return "Neither a proof nor a motion was found before the time given was over: more may decide."
         return "Neither a proof nor a motion was found: finer steps, or more effort, may decide."

@@ -14,7 +14,7 @@ from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact, unit_key
 from zwidth.passivity.witness.violation import FORMAT
 from zwidth.passivity.witness.witness import Setting
-from zwidth.quantity.text import exact_text
+from zwidth.quantity.text import exact_text, shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.witness.replayed import ReplayedMotion
@@ -62,7 +62,7 @@ class ElasticViolation(Evidence):
     def describe(self) -> str:
         """What is violated, in words."""
         if self.frequency is not None:
-            return f"a motion at {self.frequency:.6g} Hz gains"
+            return f"a motion at {shown(self.frequency, 'Hz')} gains"
         if self.refutation.reason == "unstable":
             return "while the hand holds still, the motor swings more and more on its transmission"
         return "pressed slowly, the law pulls the hand in"

@@ -31,8 +31,9 @@ from zwidth.passivity.linear.transmission import Elastic
 from zwidth.passivity.result import Result
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import REPLAYED, Motion
+from zwidth.passivity.wording import size
 from zwidth.quantity.exact import Exact, ends
-from zwidth.quantity.text import exact_text, quantity_unit, readable
+from zwidth.quantity.text import exact_text, quantity_unit, shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -130,10 +131,9 @@ class ReplayedMotion(Result):
 
     def describe(self) -> str:
         """The motion in a sentence."""
-        speed = readable(self.peak_speed, f"{self.unit}/s")
         return (
-            f"{self.motion.samples} samples, to {readable(self.depth, self.unit)} at up to {speed}, take out "
-            f"{readable(self.energy, 'J')}: replayed in the simulator, not checked by the independent checker"
+            f"{self.motion.samples} samples, {size(self.depth, self.peak_speed, self.unit)}, take out "
+            f"{shown(self.energy, 'J')}: replayed in the simulator, not checked by the independent checker"
         )
 
 

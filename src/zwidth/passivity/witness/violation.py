@@ -31,7 +31,7 @@ from zwidth.passivity.witness.sinusoid import (
     slow_press,
 )
 from zwidth.passivity.witness.witness import Setting, Witness
-from zwidth.quantity.text import exact_text, told_quantity
+from zwidth.quantity.text import exact_text, shown, told_quantity
 
 FORMAT = "zwidth violation 1"
 
@@ -83,7 +83,7 @@ class Violation(Evidence):
     def describe(self) -> str:
         """What is violated, in words."""
         if self.frequency is not None:
-            return f"a motion at {self.frequency:.6g} Hz gains"
+            return f"a motion at {shown(self.frequency, 'Hz')} gains"
         if self.refutation.reason == "negative static stiffness":
             return f"pressed slowly, the law pulls the hand in ({self._static()})"
         return "the law is unstable by itself"

@@ -16,7 +16,8 @@ from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact, loop_document, unit_key
 from zwidth.passivity.witness.motion import Motion
-from zwidth.quantity.text import quantity_unit, readable
+from zwidth.passivity.wording import size
+from zwidth.quantity.text import quantity_unit, shown
 
 FORMAT = "zwidth witness 1"
 
@@ -176,8 +177,8 @@ class Witness(Evidence):
         times = self.motion.rounds
         rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
-            f"{self.motion.samples:.6g} samples{rounds}, to {readable(self.depth, self.unit)} at up to "
-            f"{readable(self.peak_speed, f'{self.unit}/s')}, extracts {readable(self.energy, 'J')}"
+            f"{self.motion.samples:.6g} samples{rounds}, {size(self.depth, self.peak_speed, self.unit)}, "
+            f"extracts {shown(self.energy, 'J')}"
         )
 
 

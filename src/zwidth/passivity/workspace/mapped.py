@@ -19,6 +19,7 @@ from zwidth.model.arms.joints import (
 )
 from zwidth.model.arms.wall import MatrixWall, WallNeed, loss_in_pose, motion_at_hand, wall_matrices
 from zwidth.model.environment.wall import Wall
+from zwidth.quantity.text import shown
 
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]
@@ -137,7 +138,7 @@ def _encoders(
     left = np.array(arm.coulomb_friction) - steps
     force, moment = (*forces, 0.0, 0.0)[:2]
     margin = (left - force * each - (moment * turned if moment < np.inf else 0.0)).min(axis=-1)
-    words = f"Coulomb friction beyond what the encoder steps ask for, for wall forces up to {force:.4g} N"
+    words = f"Coulomb friction beyond what encoder steps ask for, for wall forces up to {shown(force, 'N')}"
     with np.errstate(divide="ignore", invalid="ignore"):
         most = np.where(each > 0, left / each, np.where(left < 0, 0.0, np.inf)).min(axis=-1)
     columns: dict[str, Column] = {"friction_margin": (margin, "N*m", words)}

@@ -35,6 +35,7 @@ from zwidth.passivity.workspace.mapped import (
 from zwidth.passivity.workspace.question import Counting, Forces, Question, asked_of, counting, with_motion
 from zwidth.passivity.workspace.verdict import OF_JOINTS_THAT_GIVE_WAY, Additions, Workspace
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
 
 _OUTSIDE = "a reading may be outside the region, and one step around it nothing is proved"
 
@@ -225,7 +226,7 @@ def _beyond(covers: Covers, steps: EncoderSteps | None, outcome: str) -> str:
     """From which force on a motion across the edges of the encoders is known."""
     if steps is None or steps.refuted is None or outcome == "active":
         return ""
-    return f" From {steps.refuted:.4g} N on a motion across their edges takes energy out."
+    return f" From {shown(steps.refuted, 'N', 4)} on a motion across their edges takes energy out."
 
 
 Array = npt.NDArray[np.float64]

@@ -24,6 +24,7 @@ from zwidth.passivity.scope import Outcome, Scope, Torque, Transmission
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
 from zwidth.quantity.answered import answered, answers, known
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import xarray
@@ -199,7 +200,7 @@ class Workspace(PassivityAnswer):
     def __repr__(self) -> str:
         stiffest = f"{self.stiffness_factor:.6g} times this one"
         if self.largest_stiffness is not None:
-            stiffest = f"{self.largest_stiffness:.6g} N/m"
+            stiffest = shown(self.largest_stiffness, "N/m", 6)
         return f"<Workspace {self.outcome}: {self.claim} Stiffest wall at every point: {stiffest}>"
 
     @property

@@ -25,7 +25,7 @@ from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import Parameter, parameters_of
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import in_words, readable, shown, unit_text
+from zwidth.quantity.text import in_words, shown, unit_text
 from zwidth.show.explorer.state import Scale, State, Values, scale_of, usual
 
 Sort = Literal["number", "word", "flag", "text"]
@@ -195,7 +195,7 @@ def typed(value: Any, unit: str) -> str:
         factor, told = spoken(unit)
         ends = (float(end) * factor for end in (value.low, value.high))
         return f"{' .. '.join(f'{end:.6g}' for end in ends)} {unit_text(told)}".strip()
-    return readable(float(value), unit, 6) if unit in _SMALL else shown(value, unit, 6)
+    return shown(float(value), unit, 6) if unit in _SMALL else shown(value, unit, 6)
 
 
 def _else(path: str, key: str, own: Parameter, value: object) -> Control:

@@ -25,7 +25,7 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import shown
 from zwidth.show.explorer.computing import Region, Touch
 from zwidth.show.plots.linear import damping_range, refined_curve
 from zwidth.show.plots.planes import (
@@ -150,8 +150,8 @@ class CriterionPicture:
         }
         unit = verdict.device.unit("damping")
         return (
-            f"Asked for at most: {in_unit(most, unit)}, at {in_unit(verdict.critical_frequency, 'Hz')}; "
-            f"the device has {in_unit(has, unit)}."
+            f"Asked for at most: {shown(most, unit, 6)}, at {shown(verdict.critical_frequency, 'Hz', 6)}; "
+            f"the device has {shown(has, unit, 6)}."
         )
 
 

@@ -21,7 +21,7 @@ from zwidth.passivity.storage.gain import Gain, settled_round
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_words, json_file, readable
+from zwidth.quantity.text import in_words, json_file, shown
 from zwidth.show.report.provenance import Provenance, of_verdict
 from zwidth.showing import Headline, Lines, Part, Table, printable
 
@@ -342,7 +342,7 @@ def as_read(text: str, unit: str) -> str:
 
 def _rounded(text: str, unit: str = "") -> str:
     try:
-        return readable(float(Fraction(text)), unit, _DIGITS)
+        return shown(float(Fraction(text)), unit, _DIGITS)
     except (ArithmeticError, ValueError):  # larger than any quantity
         return f"{text[:_LONGEST_LIST]} {unit}".rstrip()
 

@@ -16,7 +16,7 @@ from zwidth import __version__
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.result import Answer
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.text import shown, told
+from zwidth.quantity.text import shown
 from zwidth.show.report.contents import NAME, Contents, Section
 from zwidth.showing import Headline, Html, Lines, Part, Picture, Table, data_uri, element, void
 
@@ -150,10 +150,10 @@ def _pictures(verdict: Answer) -> Iterator[Picture]:
 def _criterion(verdict: LinearVerdict) -> str:
     unit = verdict.device.unit("damping")
     account = verdict.budget
-    most = told(account.required, unit, 4) if isfinite(account.required) else "any amount"
+    most = shown(account.required, unit, 4) if isfinite(account.required) else "any amount"
     return (
         f"Curve of required damping against frequency: highest at {shown(account.frequency, 'Hz')}, with "
-        f"{most}; a line marks the device's {told(account.damping, unit, 4)}."
+        f"{most}; a line marks the device's {shown(account.damping, unit, 4)}."
     )
 
 
@@ -174,9 +174,9 @@ def _budget(verdict: LinearVerdict) -> str:
     account = verdict.budget
     shares = {"the hold": account.hold, "the law": account.dynamics, "the delay": account.delay}
     asked = ", ".join(
-        f"{name} {told(value, unit, 4)}" for name, value in shares.items() if isfinite(value) and value
+        f"{name} {shown(value, unit, 4)}" for name, value in shares.items() if isfinite(value) and value
     )
-    return f"Bars: asked for by {asked or 'nothing'}; the device has {told(account.damping, unit, 4)}."
+    return f"Bars: asked for by {asked or 'nothing'}; the device has {shown(account.damping, unit, 4)}."
 
 
 def _motion(verdict: Verdict) -> str:

@@ -20,7 +20,7 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parameter, parameters_of
-from zwidth.quantity.text import in_words, readable, shown, unit_text
+from zwidth.quantity.text import in_words, shown, unit_text
 
 _WRITTEN_AS = {
     "sample_period": ("sample_period", "rate"),
@@ -149,9 +149,7 @@ def _named(key: str, value: Exact | Interval, motion: str) -> tuple[str, str]:
 
 
 def _value(value: Exact | Interval, unit: str) -> str:
-    return (
-        shown(value, unit, _DIGITS) if isinstance(value, Interval) else readable(float(value), unit, _DIGITS)
-    )
+    return shown(value, unit, _DIGITS) if isinstance(value, Interval) else shown(float(value), unit, _DIGITS)
 
 
 def _is_inertia(key: str, motion: str) -> bool:

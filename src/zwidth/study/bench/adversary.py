@@ -28,6 +28,7 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator import PrescribedMotion
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
 from zwidth.study.bench.motions import USUAL, as_speed, fixed_motions, speed_of
 
 ROUNDS = 150
@@ -94,11 +95,12 @@ class Attack:
 
     def __str__(self) -> str:
         if self.extracts:
-            said = f"{self.name}: a round of {len(self.positions)} samples takes {self.gain:.3g} J out"
-            return f"{said}, at up to {self.speed:.3g} m/s" if self.speed > REALISTIC else said
+            said = f"{self.name}: a round of {len(self.positions)} samples takes {shown(self.gain, 'J')} out"
+            return f"{said}, at up to {shown(self.speed, 'm/s', 3)}" if self.speed > REALISTIC else said
         return (
             f"none of {self.tried} motions takes energy out; the best, {self.name}, "
-            f"{'costs' if self.gain <= 0 else 'gets back from what it paid'} {abs(self.gain):.3g} J a round"
+            f"{'costs' if self.gain <= 0 else 'gets back from what it paid'} {shown(abs(self.gain), 'J')} "
+            "a round"
         )
 
 

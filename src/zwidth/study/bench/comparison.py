@@ -18,7 +18,7 @@ from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import at_most, in_a_table, shown, told, unit_text
+from zwidth.quantity.text import at_most, in_a_table, shown, unit_text
 from zwidth.showing import Part, Table
 from zwidth.study.bench.adversary import Attack
 from zwidth.study.bench.standing import Standing
@@ -111,7 +111,7 @@ class LawComparison(Documented):
         yield ""
         yield short_table(self.scores, told_of(self.scores, self.environment), most)
         yield ""
-        yield from on_paper(self.scores)
+        yield from explained(self.scores)
 
     def report(self) -> Iterable[Part]:
         """What to do, the table, and what its words mean."""
@@ -196,10 +196,10 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     alone: Any = check(device, Wall(wall.stiffness), iterate=False)
     limit, unit = alone.max_stiffness, device.unit("stiffness")
     words = [
-        f"Alone, a wall of {told(wanted, unit)} is passive on this device and needs no law."
+        f"Alone, a wall of {shown(wanted, unit, 6)} is passive on this device and needs no law."
         if alone.outcome == "passive"
-        else f"The device alone renders {told(at_most(limit, unit, 4) or 0, unit, 4)} passively, so that "
-        f"{told(wanted, unit)} needs a law or other hardware."
+        else f"The device alone renders {shown(at_most(limit, unit, 4) or 0, unit, 4)} passively, so that "
+        f"{shown(wanted, unit, 6)} needs a law or other hardware."
         if limit
         else "The device alone renders no wall passively."
     ]
@@ -209,7 +209,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
         felt = float(scores["static_stiffness"].sel(law=best))
         status = str(scores["status"].sel(law=best).item())
         words.append(
-            f"Quiet under a fast finger and closest to what is wanted is {best!r} with {told(felt, unit, 4)}"
+            f"Quiet under a fast finger and closest to what is wanted is {best!r} with {shown(felt, unit, 4)}"
             + (
                 ""
                 if status == "passive"
@@ -265,7 +265,7 @@ def _proved(scores: xr.Dataset) -> list[str]:
         best = _stiffest(some)
         felt = float(some["static_stiffness"].sel(law=best))
         if felt > most:
-            feels = told(felt, some["static_stiffness"].attrs["units"], 4)
+            feels = shown(felt, some["static_stiffness"].attrs["units"], 4)
             words.append(f"{how} for every hand, the stiffest here is {best!r}: {feels} are felt.")
             most = felt
     return words or ["None of these laws is proved for every hand."]
@@ -298,7 +298,7 @@ COLUMNS = (
     Column("bounces", "bounces", 1.0, ""),
     Column("settles", "settling_time", 1e3, "ms"),
     Column("peak", "peak_force", 1.0, "N"),
-    Column("given out", "generated_energy", 1e3, "mJ"),
+    Column("law gave", "generated_energy", 1e3, "mJ"),
     Column("to a dowel", "dowel_energy", 1e3, "mJ"),
     Column("free air", "free_damping", 1.0, "N·s/m"),
     Column("adversary", "gain", 1e3, "mJ/round"),
@@ -340,7 +340,7 @@ def _row(one: xr.Dataset, columns: Sequence[Column] = ()) -> list[str]:
 
 
 _KEYS = ("static_stiffness", "generated_energy", "gain")
-"""What is felt, what is given out, and what the worst motion takes: the columns of a short table."""
+"""What is felt, what the law gave, and what the worst motion takes: the columns of a short table."""
 
 _RANK = ("passive", "theorem", "undecided", "active")
 
@@ -366,14 +366,17 @@ def legend(scores: xr.Dataset) -> str:
     """What the words of the table mean that are not clear by themselves."""
     steps = f"just-noticeable differences of {WEBER:.0%} ({SOURCE})"
     jnds = f"JNDs: felt against the stiffness that is wanted, in {steps}; below 0 it is softer"
-    return "; ".join([*on_paper(scores), jnds])
+    return "; ".join([*explained(scores), jnds])
 
 
-def on_paper(scores: xr.Dataset) -> list[str]:
-    """What is meant by the proofs without a certificate, where there are some."""
-    if not (scores["status"] == "theorem").any():
-        return []
-    return [f"{ON_PAPER}: a theorem, by a proof on paper, no certificate"]
+def explained(scores: xr.Dataset) -> list[str]:
+    """Which energy is meant, and by the proofs without a certificate, where there are some."""
+    gave = (
+        "law gave: in a tap, the most that the law had given beyond what it had taken; of a passive one the "
+        "device's friction takes all of it, and the hand gets none"
+    )
+    theorem = [f"{ON_PAPER}: a theorem, by a proof on paper, no certificate"]
+    return [gave, *(theorem if (scores["status"] == "theorem").any() else [])]
 
 
 def _number(value: float) -> str:

@@ -27,6 +27,7 @@ from zwidth.model.rendering.rendering_law import LoopContext, half_a_step
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
+from zwidth.passivity.outcome_evidence import claim
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.chain_program import COUNTS, ChainProgram, chain_program
@@ -37,6 +38,7 @@ from zwidth.passivity.transmission import as_one_body
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands
+from zwidth.quantity.text import told_quantity
 from zwidth.study.bench.adversary import LONGEST, Attack, taken_out
 from zwidth.study.bench.motions import NODES, Budget, Spent, budget_of
 
@@ -109,7 +111,7 @@ def _behind(device: Device, law: Environment) -> Standing:
     verdict = check(device, law, iterate=False)
     ideal = device.force_limit is device.force_resolution is None
     status: Status = "active" if ideal and verdict.outcome == "active" else "undecided"
-    return Standing(status=status, reason=verdict.claim, scope=_scope(device, law))
+    return Standing(status=status, reason=claim(verdict), scope=_scope(device, law))
 
 
 def _scope(device: Device, law: Environment) -> Scope:
@@ -128,16 +130,16 @@ def _by_check(device: Device, law: Environment) -> Standing | list[str]:
         return []
     verdict, why_not = _with_the_actuator(device, law)
     if verdict is not None:
-        reason = f"{verdict.claim}{_paid(device)}"
+        reason = f"{claim(verdict)}{_paid(device)}"
         return Standing(status="passive", reason=reason, scope=_scope(device, law))
     ideal = check_by_closed_forms(device, law)
     if ideal.is_proved:
-        return [f"For an ideal actuator: {ideal.claim} {why_not}"]
+        return [f"For an ideal actuator: {claim(ideal)} {why_not}"]
     if ideal.outcome == "active":
         if _takes_out(device, law, ideal):
-            return Standing(status="active", reason=ideal.claim, scope=_scope(device, law))
-        return [f"For an ideal actuator: {ideal.claim} With this one that motion does not gain."]
-    return [ideal.claim]
+            return Standing(status="active", reason=claim(ideal), scope=_scope(device, law))
+        return [f"For an ideal actuator: {claim(ideal)} With this one that motion does not gain."]
+    return [claim(ideal)]
 
 
 def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str]:
@@ -149,15 +151,16 @@ def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str
     less, wall = _without(covered[0], -half), covered[1]
     verdict, why_not = _with_the_actuator(less, wall)
     dry = device.exact("coulomb_friction") - less.exact("coulomb_friction")
-    more = f" and {float(dry):.6g} N of Coulomb friction" if dry else ""
-    added = f"What the laws add is never more than that of {wall.damping} N·s/m{more}"
+    more = f" and {_force(dry, device)} of Coulomb friction" if dry else ""
+    most = told_quantity(wall.damping, "virtual_damping", device.motion)
+    added = f"What the laws add is never more than that of {most}{more}"
     if verdict is None:
         promised = check_by_closed_forms(less, wall).outcome == "passive"
         return [f"{added}, which is covered for an ideal actuator. {why_not}"] if promised else []
     return Standing(
         status="passive",
         reason=f"{added}, and every such force is covered, contact made and broken: "
-        f"{verdict.claim}{_paid(device)}",
+        f"{claim(verdict)}{_paid(device)}",
         scope=_scope(device, law),
     )
 
@@ -198,19 +201,20 @@ def _with_the_actuator(device: Device, law: Environment) -> tuple[Verdict | None
     spare = device.exact("coulomb_friction") - half_a_step(device)
     if spare < 0:
         return None, (
-            f"The converter's steps are not covered: they take {float(half_a_step(device)):.6g} N of Coulomb "
-            f"friction, and the device has {float(device.exact('coulomb_friction')):.6g} N."
+            f"The converter's steps are not covered: they take {_force(half_a_step(device), device)} of "
+            f"Coulomb friction, and the device has {_force(device.exact('coulomb_friction'), device)}."
         )
     verdict = check_by_closed_forms(_without(device, half_a_step(device)), law)
     if verdict.outcome == "passive":
         return verdict, ""
     if verdict.outcome == "passive in contact":
         return None, "Making and breaking contact is not covered."
-    half = float(half_a_step(device))
-    return (
-        None,
-        f"The converter's steps are not covered: the {half:.6g} N that they take is needed elsewhere.",
-    )
+    half = _force(half_a_step(device), device)
+    return None, f"The converter's steps are not covered: the {half} that they take is needed elsewhere."
+
+
+def _force(value: Fraction, device: Device) -> str:
+    return told_quantity(float(value), "force", device.motion)
 
 
 def _without(device: Device, friction: Fraction) -> Device:
@@ -224,8 +228,8 @@ def _paid(device: Device) -> str:
     """What is said of the actuator."""
     parts = []
     if device.force_resolution is not None:
-        half = float(half_a_step(device))
-        parts.append(f"the converter's steps are counted: {half:.3g} N of friction pays for them")
+        half = _force(half_a_step(device), device)
+        parts.append(f"the converter's steps are counted: {half} of friction pays for them")
     if device.force_limit is not None:
         parts.append("the force limit is counted")
     return f" ({'; '.join(parts)})" if parts else ""

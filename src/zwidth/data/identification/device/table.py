@@ -19,7 +19,7 @@ from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import as_decimal, in_a_table, quantity_unit, told_quantity, unit_text
+from zwidth.quantity.text import as_decimal, in_a_table, quantity_unit, shown, told_quantity, unit_text
 from zwidth.showing import Lines, Part, Table, one_line
 
 if TYPE_CHECKING:
@@ -63,10 +63,15 @@ EACH_SIDE = (
 )
 """What is said instead where the log shows that they do not."""
 
+_OF_WALLS = (
+    "intervals of m, b and f_c are of the mean of both directions; that of a wall begins at the least that "
+    "friction may be, either way and at every speed that was seen"
+)
+
 
 def assumed(identified: IdentifiedNumbers) -> str:
-    """Whose numbers these are."""
-    return BOTH_SIDES if identified.cable is None else EACH_SIDE
+    """Whose numbers these are, and what of them the walls count."""
+    return f"{BOTH_SIDES if identified.cable is None else EACH_SIDE}; {_OF_WALLS}"
 
 
 class Row(NamedTuple):
@@ -121,7 +126,7 @@ def facts(identified: IdentifiedNumbers) -> str:
     return (
         f"r² = {identified.explained:.4f}, noise {identified.force_noise:.3g} {force} per sample, offset "
         f"{identified.offset:.3g} {force}; {identified.strokes} strokes, {identified.pulses} means over "
-        f"{1e3 * identified.pulse_length:.3g} ms; T = {identified.sample_period:.6g} s, "
+        f"{shown(identified.pulse_length, 's', 3)}; T = {shown(identified.sample_period, 's', 6)}, "
         f"Δ = {told_quantity(identified.resolution, 'position', identified.motion)}\n"
         f"friction seen up to {inward} into the wall, {outward} out of it"
     )
@@ -386,7 +391,7 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     else:
         lines.append(
             f"a longer log would not halve the interval of {name}: half of it and more is what means over "
-            f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
+            f"{shown(identified.pulse_length, 's', 3)} may be off; smoother, longer strokes allow longer ones"
         )
     factor, speed = spoken(GLOSSARY["friction_speed"].unit_for(identified.motion))
     inward, outward = (factor * fast for fast in identified.fastest)

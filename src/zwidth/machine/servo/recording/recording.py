@@ -22,6 +22,7 @@ from zwidth.model.specification.read import Specification
 from zwidth.model.specification.write import parsed
 from zwidth.native.compiled import Array
 from zwidth.quantity.answered import answered, answers, data_of
+from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Shown, Table, printable
 
 if TYPE_CHECKING:
@@ -187,14 +188,14 @@ class Recording(Shown):
             yield "It has no end: the recording was cut off there. What is before is as it was written."
         rows = [
             ["samples", f"{self.samples:,}"],
-            ["time", f"{self.duration:.6g} s"],
-            ["sample period", f"{self.period:g} s"],
+            ["time", shown(self.duration, "s", 6)],
+            ["sample period", shown(self.period, "s", 6)],
             ["samples missed by the loop", f"{self.missed:,}"],
             ["rows lost by the recorder", f"{self.rows_lost:,}"],
             ["without a good answer", f"{self.unanswered:,}"],
         ]
         if self.samples:
-            rows.append(["latest sample", f"{1e6 * float(self.columns['late_s'].max()):.4g} µs late"])
+            rows.append(["latest sample", f"{shown(float(self.columns['late_s'].max()), 's', 4)} late"])
         yield Table(rows=rows, lefts=2)
         if self.events:
             yield Lines([_short(event) for event in self.events], "events")

@@ -22,7 +22,7 @@ from zwidth.passivity.pairs.held.law import HeldPair, felt, felt_loop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.witness.motion import Repeat
-from zwidth.quantity.text import exact_text, told_quantity
+from zwidth.quantity.text import exact_text, shown, told_quantity
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,7 +71,8 @@ class HeldViolation(Evidence):
 
     def describe(self) -> str:
         """What is violated, in words."""
-        return f"at {self.frequency:.6g} Hz some motion of the {self.question.free} gains in every round"
+        at = shown(self.frequency, "Hz")
+        return f"at {at} some motion of the {self.question.free} gains in every round"
 
 
 def held_document(question: HeldPair, motion: Motion) -> dict[str, Any]:
@@ -172,7 +173,8 @@ class HeldWitness(Evidence):
         question = self.violation.question
         far = told_quantity(float(np.ptp(self.positions)), "position", question.pair.motion, 3)
         return (
-            f"a wave of {self.samples} samples takes {self.energy:.4g} J out, the {question.free} over {far}"
+            f"a wave of {self.samples} samples takes {shown(self.energy, 'J')} out, the "
+            f"{question.free} over {far}"
         )
 
 

@@ -28,6 +28,7 @@ from zwidth.passivity.pairs.limits import StiffnessAt, grain_of, is_passive, lar
 from zwidth.passivity.pairs.verdict import check_pair, has_and_needs
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Hands, Outcome, Scope
+from zwidth.passivity.wording import UNWRITTEN, takes
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown, shown_at_most
@@ -133,10 +134,12 @@ class HeldVerdict(PassivityAnswer):
         if self.outcome == "active":
             hand = "this hand" if self.question.motion.is_certain else "one of these hands"
             by = "nobody" if self.question.hand.is_nobody else hand
-            return (
-                f"A hand on the {free} can take energy out of this pair, without end, while {by} holds the "
-                f"{self.question.held}."
-            )
+            held = f"while {by} holds the {self.question.held}"
+            if self.witness is None:
+                can = f"A hand on the {free} can take any amount of energy out of this pair"
+                return f"{can}, {held}. {UNWRITTEN}"
+            taken = takes(f"a hand on the {free}", self.witness.energy, "pair", self.witness.duration)
+            return f"{taken}, {held}."
         return f"Neither a proof nor a motion of the {free} that takes energy out was found."
 
     @property
