@@ -44,7 +44,7 @@ class Gain(Evidence):
         Against which the hand moves, and what the device takes out.
     """
 
-    PICTURE = "cycle"
+    _PICTURE = "cycle"
 
     document: dict[str, Any]
     motion: Motion
