@@ -18,8 +18,7 @@ plt.rcParams.update(plots.LOOK)
 ball = zw.Device(mass=0.35, damping=0, sample_period=0.010, name="manipulandum")
 wall = zw.Wall(5000)
 finger = zw.operators.Tracking([0.004], stiffness=500, damping=0, mass=0.006)  # rests 4 mm inside
-start = {"initial_position": -0.02, "points_per_sample": 40}
-sampled = zw.simulate(ball, wall, finger, 0.4, **start)
+sampled = zw.simulate(ball, wall, finger, 0.4, initial_position=-0.02, points_per_sample=40)
 
 # %%
 # The wall that was meant is a spring at every instant: the same loop sampled so

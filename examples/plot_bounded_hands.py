@@ -77,7 +77,14 @@ for depth, (marker, colour) in DEPTHS.items():
     text = f"value iteration: up to {1000 * float(depth):g} mm deep"
     left.plot([], [], marker, color=colour, mfc="white", label=text)
 speeds = [Fraction(2 * 10 ** (k / 40)).limit_denominator(10**6) / 100 for k in range(89)]
-left.plot(speeds, [formula(v) for v in speeds], color="#777777", lw=1.2, zorder=1, label="formula: any depth")
+left.plot(
+    [*map(float, speeds)],
+    [float(formula(v)) for v in speeds],
+    color="#777777",
+    lw=1.2,
+    zorder=1,
+    label="formula: any depth",
+)
 for limit, text in ((sampling, "2b/T: every hand"), (encoder, "2f$_c$/Δ: hands that creep")):
     left.axhline(limit, color="#777777", ls="--", lw=1)
     left.text(3.4, limit * 1.03, text, ha="right", va="bottom", color="#777777")

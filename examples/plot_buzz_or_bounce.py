@@ -30,5 +30,5 @@ plots.draw_witness(rows, verdict)
 # %%
 # The number: what this encoder allows, 2f_c/Δ.
 
-print(f"{verdict.mode}: largest passive stiffness {verdict.max_stiffness:.4g} N/m")
+print(f"{verdict.limit}: largest passive stiffness {verdict.max_stiffness:.4g} N/m")
 plt.show()

@@ -44,7 +44,7 @@ plt.rcParams.update(plots.LOOK)
 RED, GREEN, BLUE, GREY = "#D55E00", "#009E73", "#0072B2", "#777777"
 COLOURS = {"proved": GREEN, "refuted": RED, "undecided": "#CCCCCC"}
 STIFFNESS, DAMPING, COUNTS, REACH = 1, 10, 12, 8
-verified = []
+verified: list = []
 
 
 def wall(estimate):

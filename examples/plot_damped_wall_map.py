@@ -65,7 +65,7 @@ DEPTH = REACH = 40
 RHOS = {Fraction(1, 2): RED, Fraction(2): BLUE}
 plane_brackets = []
 for rho in RHOS:
-    limit = min(1, rho)
+    limit = min(Fraction(1), rho)
     for x in (limit * (2 * k + 1) / 16 for k in range(8)):
         for clamped in (False, True):
             bracket = largest_stiffness(rho, x, limit - x, DEPTH, REACH, clamped=clamped)
@@ -110,7 +110,7 @@ REACHES = {2: ("D", RED), 8: ("o", BLUE)}
 window_brackets = []
 for reach in REACHES:
     for x in (Fraction(k, 5) for k in range(1, 5)):
-        linear = 1 - window_damping(0, x, 2, 1).fraction
+        linear = 1 - Fraction(9, 16) * x
         law = zw.rendering.Window(2)
         bracket = largest_stiffness(1, x, linear, 16, reach, velocity_filter=law)
         window_brackets.append((reach, x, float(linear), bracket))
@@ -120,7 +120,7 @@ for reach in REACHES:
 
 figure, ((plane, friction), (reaches, windows)) = plt.subplots(2, 2, figsize=(9.6, 8), layout="constrained")
 for rho, colour in RHOS.items():
-    limit = min(1, rho)
+    limit = min(Fraction(1), rho)
     plane.fill([0, limit, 0], [0, 0, limit], color=colour, alpha=0.13, lw=0)
     plane.plot([0, limit], [limit, 0], color=colour, label=f"every hand, ρ = {float(rho):g}")
 for rho, clamped, x, bracket in plane_brackets:
@@ -186,7 +186,11 @@ def off(line, bracket):
 print("bounded hands, proved and refuted by value iteration:")
 for rho in (Fraction(1, 2), Fraction(2)):
     for clamped in (False, True):
-        rows = [(float(min(1, r) - x), ends) for r, c, x, ends in plane_brackets if (r, c) == (rho, clamped)]
+        rows = [
+            (min(1.0, float(r)) - float(x), ends)
+            for r, c, x, ends in plane_brackets
+            if (r, c) == (rho, clamped)
+        ]
         above = [sum(bracket) / 2 - y for y, bracket in rows]
         law = "never pulls" if clamped else "may pull"
         print(

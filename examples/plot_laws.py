@@ -16,7 +16,7 @@ from zwidth.show import plots
 from zwidth.study.bench import standard_laws
 
 plt.rcParams.update(plots.LOOK)
-chosen = {
+chosen: dict[str, dict] = {
     "haptic-paddle": {},
     "course-plant": {"rate": "1 kHz", "coulomb_friction": 0},
     "phantom": {"mass": "0.1"},
@@ -48,7 +48,7 @@ FOOT, TOP, APART = 1e-3, 300.0, 0.19  # of the axis [mJ], [mJ]; of two labels [d
 
 def groups(scores, wanted):
     """Laws that lie within a twentieth of a decade of each other, with their place."""
-    found = []
+    found: list = []
     for law in scores.law.values:
         one = scores.sel(law=law)
         given = max(float(one.generated_energy), float(one.dowel_energy), 1e-3 * FOOT) * 1e3

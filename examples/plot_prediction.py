@@ -71,7 +71,7 @@ for stiffness in (500, 1000, 2000):
 # knows another finger, or another mass, than the one that is there; or the readings are rounded,
 # or the force comes late, of which the model knows nothing.
 
-cases = {
+cases: dict[str, tuple[dict, dict]] = {
     "as it is": ({}, {}),
     "finger taken for half as stiff": ({"finger_stiffness": 250}, {}),
     "finger taken for twice as stiff": ({"finger_stiffness": 1000}, {}),

@@ -33,13 +33,15 @@ before, after = (
 )
 force = np.where(time < 20, before, after) + np.random.default_rng(1).normal(0, 0.01, time.size)
 
-memory = {"forgetting": 0.9995, "noise": 0.01}
+forgetting = 0.9995
 start = (200, 200, 20)
 tracks = {
-    method: zw.tissue.RecursiveSolid(T, start, method=method, **memory).track(position, force)
+    method: zw.tissue.RecursiveSolid(T, start, method=method, forgetting=forgetting, noise=0.01).track(
+        position, force
+    )
     for method in ("least-squares", "instrumental")
 }
-five = zw.tissue.track_five_parameters(position, force, T, forgetting=memory["forgetting"])
+five = zw.tissue.track_five_parameters(position, force, T, forgetting=forgetting)
 
 # %%
 # Both have a memory of 2 s.  The first-order form has the stiffness by either method; the

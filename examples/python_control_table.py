@@ -87,5 +87,4 @@ def table() -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.reconfigure(encoding="utf-8")
-    print(table())
+    sys.stdout.buffer.write(f"{table()}\n".encode())

@@ -43,7 +43,7 @@ def shaking(path: Path) -> None:
     )
     trace = trace.isel(time=slice(300, 1500))
     columns = (np.rad2deg(trace["measured_position"]), trace["commanded_force"], trace["actuator_force"])
-    table = np.column_stack([trace["time"].values, *(column.values for column in columns)])
+    table = np.column_stack([trace["time"].values, *map(np.asarray, columns)])
     names = "time_s,angle_deg,commanded_torque_N_m,motor_torque_N_m"
     _write(path, table, names, ("%.3f", "%.4f", "%.4f", "%.4f"))
 

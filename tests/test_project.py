@@ -13,12 +13,15 @@ import shlex
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from contextlib import redirect_stdout, suppress
 from fractions import Fraction
 from functools import cache
 from importlib import import_module
 from io import StringIO
 from pathlib import Path
+from textwrap import dedent
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -442,6 +445,31 @@ def test_type_checkers_see_every_public_name():
     assert not {"passive_limit", "plan_identification", "operator"} & {*dir(zw)}
 
 
+def _rooms(room: ModuleType) -> Iterator[ModuleType]:
+    """It, and those that it offers, and that these offer."""
+    yield room
+    for name in getattr(room, "__all__", ()):
+        inside = getattr(room, name)
+        if isinstance(inside, ModuleType):
+            yield from _rooms(inside)
+
+
+def test_completion_shows_what_a_person_wants_and_nothing_else():
+    """`dir`, which it asks: of a room no import and no type of typing, of a class no constant in capitals."""
+    rooms = [room for room in _rooms(zw) if room is not zw.firmware]  # which defines nothing
+    classes = set()
+    for room in rooms:
+        offered = {name: getattr(room, name) for name in dir(room)}
+        assert offered, room
+        for name, one in offered.items():
+            assert not isinstance(one, ModuleType) or name in room.__all__, (room, name)
+            assert getattr(one, "__module__", "zwidth").startswith("zwidth"), (room, name)
+        classes |= {one for one in offered.values() if isinstance(one, type)}
+    assert len(rooms) > 25
+    assert len(classes) > 150
+    assert [(one, name) for one in classes for name in dir(one) if name.isupper() and name[0] != "_"] == []
+
+
 def test_no_module_bears_the_name_of_what_its_package_offers():
     """Whoever imports the module would put it in the place of a function that is found when asked for."""
     for stub in (ROOT / "src").rglob("__init__.pyi"):
@@ -471,13 +499,46 @@ def test_each_command_of_the_readme_works_as_typed(tmp_path, monkeypatch, capsys
         assert status in (0, 1), f"{line}\n{capsys.readouterr().err}"
 
 
+def _said_of(script: Path, *options: str) -> list[str]:
+    """What mypy says of a script, or of all in a folder, and not of what they import."""
+    where = script if script.is_dir() else script.parent
+    command = [sys.executable, "-m", "mypy", "--cache-dir", str(where / "cache"), *options, str(script)]
+    environment = {**os.environ, "MYPYPATH": str(ROOT / "src")}
+    done = subprocess.run(command, cwd=where, capture_output=True, encoding="utf-8", env=environment)
+    own = tuple(f"{path.name}:" for path in where.glob("*.py"))
+    return [line for line in done.stdout.splitlines() if line.startswith(own)]
+
+
 def test_a_type_checker_sees_what_the_readme_asks_of_a_verdict(tmp_path):
     """Every attribute of its example exists for mypy, on the type that `zwidth.check` is said to return."""
     script = tmp_path / "readme.py"
-    unknown = "verdict.no_such_name"
-    script.write_text("\n".join([_blocks("README.md", "python")[0], unknown]), encoding="utf-8")
-    environment = {**os.environ, "MYPYPATH": str(ROOT / "src")}
-    command = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), str(script)]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, encoding="utf-8", env=environment)
-    (said,) = [line for line in done.stdout.splitlines() if line.startswith("readme.py:")]
+    script.write_text(
+        "\n".join([_blocks("README.md", "python")[0], "verdict.no_such_name"]), encoding="utf-8"
+    )
+    (said,) = _said_of(script)
     assert "no_such_name" in said
+
+
+def test_a_type_checker_finds_nothing_in_the_examples(tmp_path):
+    """Nor in the lessons, nor on a page of the docs: nothing that is wrong whatever the loop.
+
+    Whoever runs a script knows whether there is an answer, so that None is no error; a name may be given
+    anew, and a page has some from the text above.
+    """
+    samples = SOURCE / "model" / "samples"
+    code = {path: _text(path) for path in [*(ROOT / "examples").rglob("*.py"), samples / "fit_tissue.py"]}
+    for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
+        blocks = _blocks(str(page.relative_to(ROOT)), "python")
+        code[page] = "\n".join(["import zwidth as zw", *map(dedent, blocks)])
+    for page in samples.glob("*.ipynb"):
+        cells = json.loads(_text(page))["cells"]
+        code[page] = "\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    for path, text in code.items():
+        name = re.sub(r"\W", "_", str(path.relative_to(ROOT)))
+        (tmp_path / f"{name}.py").write_text(text, encoding="utf-8")
+    assert len(code) > 60
+    options = "--check-untyped-defs --no-strict-optional --allow-redefinition --ignore-missing-imports"
+    assert (
+        _said_of(tmp_path, *options.split(), "--disable-error-code=name-defined", "--scripts-are-modules")
+        == []
+    )

@@ -374,13 +374,13 @@ def answer(where: str) -> str:
     """Every key of a result's plain data, and what it is; units are those of a linear device."""
     module, _, name = where.partition(":")
     kind = getattr(import_module(f"zwidth.{module}"), name)
-    rows = [("`format`", f'`"{kind.FORMAT}"`')] if getattr(kind, "FORMAT", "") else []
+    rows = [("`format`", f'`"{kind._FORMAT}"`')] if getattr(kind, "_FORMAT", "") else []
     for name, one in ({} if isinstance(kind, tuple) else declared(kind)).items():
         if not one.only_shown:
             keys = one.stands_as or [one.key_for(name, "linear")]
             parts = f": {', '.join(f'`{part}`' for part in one.names)}" if one.names else ""
             rows.append((", ".join(f"`{key}`" for key in keys), _in_a_cell(one.meaning) + parts))
-    besides = kind if isinstance(kind, tuple) else getattr(kind, "BESIDES", ())
+    besides = kind if isinstance(kind, tuple) else getattr(kind, "_BESIDES", ())
     rows += [(f"`{keys.replace(', ', '`, `')}`", meaning.replace("|", "\\|")) for keys, meaning in besides]
     return markdown(("key", "value"), rows)
 

@@ -42,6 +42,8 @@ def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]],
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         source, inner = places[name]
         found = import_module(f"{source}.{inner}") if source == package else _found(source, inner)
+        if isinstance(found, ModuleType):
+            _list_its_own(found)
         setattr(module, name, found)
         return found
 
@@ -103,6 +105,15 @@ def _places(stub: Path, all_of_them: bool = False) -> list[tuple[str, tuple[str,
         if isinstance(line, ast.Assign) and isinstance(line.value, ast.Name):
             found[ast.unparse(line.targets[0])] = found.pop(line.value.id)
     return list(found.items())
+
+
+def _list_its_own(room: ModuleType) -> None:
+    """Have `dir` say what a room offers, and nothing that it imports: its `__all__`, or what it defines."""
+    own = vars(room)
+    here = [name for name, value in own.items() if getattr(value, "__module__", "") == room.__name__]
+    offered = own.get("__all__") or [name for name in here if name[0] != "_"]
+    if offered:
+        own.setdefault("__dir__", lambda: offered)
 
 
 def _found(module: str, name: str) -> Any:

@@ -16,7 +16,7 @@ def library(module: str, cannot: str) -> Any:
         return import_module(module)
     except ImportError:
         name = module.partition(".")[0]
-        raise InputError(f"{cannot} takes {name}, which is not installed: {line('logs')}") from None
+        raise InputError(f"{cannot} takes {name}, which is not installed; type", line("logs")) from None
 
 
 def parquet(cannot: str) -> Any:

@@ -28,7 +28,7 @@ LATER = b"zwp\x03" + PACKET.to_bytes()[4:-4] + bytes(9)
 
 def test_a_packet_comes_back_from_its_bytes() -> None:
     data = PACKET.to_bytes()
-    assert len(data) == Packet.SIZE == 56
+    assert len(data) == Packet._SIZE == 56
     assert Packet.from_bytes(data) == PACKET
 
 
@@ -42,7 +42,7 @@ def broken(bit: int) -> bytes:
 @pytest.mark.parametrize(
     ("data", "said"),
     [
-        *((broken(bit), "as if it were lost") for bit in range(0, 8 * Packet.SIZE, 7)),
+        *((broken(bit), "as if it were lost") for bit in range(0, 8 * Packet._SIZE, 7)),
         *((data, "56 bytes") for data in (b"", PACKET.to_bytes()[:-1], PACKET.to_bytes() + b"\0")),
         (OLD + struct.pack("<I", zlib.crc32(OLD)), "of version 1, and this port reads version 2"),
         (LATER + struct.pack("<I", zlib.crc32(LATER)), "of version 3, and this port reads version 2"),

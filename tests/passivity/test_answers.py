@@ -66,9 +66,9 @@ def test_no_answer_is_true_or_false(name: str) -> None:
     The margin is on the side of the outcome: positive for yes, negative for no; some have none.
     """
     answer = answered(name)
-    with pytest.raises(zw.InputError, match=rf"neither true nor false: ask \.{answer.YES}, which"):
+    with pytest.raises(zw.InputError, match=rf"neither true nor false: ask \.{answer._YES}, which"):
         bool(answer)
-    assert getattr(answer, answer.YES) is (name in YES)
+    assert getattr(answer, answer._YES) is (name in YES)
     assert isinstance(answer, PassivityAnswer) is (name not in OF_STABILITY)
     if isinstance(answer, PassivityAnswer):
         assert answer.passive is (answer.outcome == "passive")

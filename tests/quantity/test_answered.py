@@ -20,7 +20,7 @@ class _Part(Documented):
 
 @dataclass(frozen=True, repr=False)
 class _Pressed(Documented):
-    FORMAT = "zwidth pressed 1"
+    _FORMAT = "zwidth pressed 1"
 
     motion: str = answered("linear or rotary")
     stiffness: float | None = answered("how stiff it is", quantity="stiffness", row="largest stiffness")

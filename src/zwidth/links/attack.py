@@ -47,7 +47,7 @@ class LinkWitness(Result):
         Of each hand at every sample [m; rad], at constant speed between two; a row for each.
     """
 
-    FORMAT: ClassVar[str] = "zwidth link motion 1"
+    _FORMAT: ClassVar[str] = "zwidth link motion 1"
 
     leader: Port
     follower: Port
@@ -94,7 +94,7 @@ class LinkWitness(Result):
         unit = unit_suffix(self.leader.device.unit("position"))
         leader, follower = (row.tolist() for row in self.positions)
         return {
-            "format": self.FORMAT,
+            "format": self._FORMAT,
             f"leader_positions_{unit}": leader,
             f"follower_positions_{unit}": follower,
             "energy_J": self.energy,

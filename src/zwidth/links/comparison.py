@@ -66,9 +66,9 @@ class LinkComparison(Documented):
         For how long the loops of leader and follower are to keep each force back [s]; () where they need not.
     """
 
-    FORMAT: ClassVar[str] = "zwidth links 1"
-    PICTURE: ClassVar[str] = "plot_links"
-    BESIDES = (
+    _FORMAT: ClassVar[str] = "zwidth links 1"
+    _PICTURE: ClassVar[str] = "plot_links"
+    _BESIDES = (
         ("link", "in words"),
         (
             "held_back_s",
@@ -140,7 +140,7 @@ class LinkComparison(Documented):
             for name, row in self.rows.items()
         }
         held = {"held_back_s": [float(time) for time in self.held_back]} if self.held_back else {}
-        return {"format": self.FORMAT, "link": self.schedule.describe(), **held, "ports": ports}
+        return {"format": self._FORMAT, "link": self.schedule.describe(), **held, "ports": ports}
 
     def report(self) -> Iterable[Part]:
         """Which ports are passive over every such link, the link, and a table with a row for each port."""

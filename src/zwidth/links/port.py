@@ -291,7 +291,7 @@ class Packet:
     run: int
     to: int = 0
 
-    SIZE = _LAYOUT.size + _CHECKSUM.size
+    _SIZE = _LAYOUT.size + _CHECKSUM.size
     """Bytes of a packet."""
 
     def __post_init__(self) -> None:
@@ -335,9 +335,9 @@ class Packet:
                 f"a packet of version {version}, and this port reads version {_MARK[3]}: install one "
                 "zwidth at both ends; leave it out, as if it were lost"
             )
-        if len(data) != cls.SIZE:
+        if len(data) != cls._SIZE:
             raise InputError(
-                f"a packet has {cls.SIZE} bytes, got {len(data)}; leave it out, as if it were lost"
+                f"a packet has {cls._SIZE} bytes, got {len(data)}; leave it out, as if it were lost"
             )
         body, check = data[: _LAYOUT.size], data[_LAYOUT.size :]
         if _CHECKSUM.unpack(check)[0] != zlib.crc32(body):

@@ -62,7 +62,7 @@ class PortVerdict(PassivityAnswer):
         The motion that takes energy out; None where none was found.
     """
 
-    FORMAT: ClassVar[str] = "zwidth port 1"
+    _FORMAT: ClassVar[str] = "zwidth port 1"
 
     port: Port
     schedule: Schedule

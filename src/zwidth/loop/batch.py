@@ -97,7 +97,7 @@ def simulate_batch(
     operator: Operator,
     duration: RealLike,
     *,
-    vary: Mapping[str, Sequence[Any]],
+    vary: Mapping[str, Sequence[Any] | Array],
     together: bool = False,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -149,7 +149,7 @@ class _Base(NamedTuple):
     options: dict[str, Any]
 
 
-def _axes(vary: Mapping[str, Sequence[Any]], together: bool) -> dict[str, list[Any]]:
+def _axes(vary: Mapping[str, Sequence[Any] | Array], together: bool) -> dict[str, list[Any]]:
     axes = {str(name): _values(str(name), values) for name, values in vary.items()}
     if not axes or not all(axes.values()):
         raise InputError(
@@ -161,7 +161,7 @@ def _axes(vary: Mapping[str, Sequence[Any]], together: bool) -> dict[str, list[A
     return axes
 
 
-def _values(name: str, values: Sequence[Any]) -> list[Any]:
+def _values(name: str, values: Any) -> list[Any]:
     try:
         listed = list(np.atleast_1d(values))
         hash(tuple(listed))

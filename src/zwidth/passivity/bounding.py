@@ -47,7 +47,7 @@ class Bounding(PassivityAnswer):
         The proof; None unless passive.
     """
 
-    FORMAT = "zwidth bounding 1"
+    _FORMAT = "zwidth bounding 1"
     witness = None
 
     outcome: Literal["passive", "undecided"]

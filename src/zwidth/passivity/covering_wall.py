@@ -34,7 +34,7 @@ def covering(device: Device, law: Environment) -> tuple[Device, Wall] | None:
             compensation.append(link)
             continue
         alone = n == 0 and isinstance(wall.stiffness, Exact)
-        bound = link.most_damping(device, wall.stiffness if alone else None)  # type: ignore[arg-type]
+        bound = link.most_damping(device, wall.stiffness if alone else None)
         if bound is None:
             return None
         total += bound

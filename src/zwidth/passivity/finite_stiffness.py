@@ -72,8 +72,8 @@ class Threshold(NamedTuple):
 class FiniteStiffnessReplay(Documented):
     """A witness replayed by the ideal hand and by hands of finite stiffness."""
 
-    FORMAT = "zwidth real hand 1"
-    BESIDES = (
+    _FORMAT = "zwidth real hand 1"
+    _BESIDES = (
         ("hands", "for each hand tried: `stiffness_N_per_m`, `bandwidth_Hz`, `energy_J`"),
         (
             "thresholds",

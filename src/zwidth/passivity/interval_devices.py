@@ -51,7 +51,7 @@ class Measure(NamedTuple):
 class OverRanges:
     """What holds over the ranges of a device."""
 
-    BESIDES = (
+    _BESIDES = (
         ("stated", "of each number, with its unit in the key: `low`, `high`, and `why` this range"),
         (
             "measure_first",

@@ -28,7 +28,7 @@ from zwidth.quantity.text import at_most, enough, in_words, shown
 class LinearVerdict(Verdict):
     """A verdict on a law that is H(z) inside, with its numbers."""
 
-    BESIDES = (
+    _BESIDES = (
         (
             "outcome",
             '`"passive"`, `"passive in contact"`, `"passive without encoder steps"`, `"theorem"`, '

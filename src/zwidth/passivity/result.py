@@ -20,7 +20,7 @@ from zwidth.showing import Headline, Lines, Part, Table
 def evidence_of(result: object) -> dict[str, Any]:
     """The proofs and motions that a result holds, as plain data."""
     found = {name: getattr(result, name, None) for name in EVIDENCE}
-    return {getattr(part, "KEY", name): part.saved() for name, part in found.items() if part is not None}
+    return {getattr(part, "_KEY", name): part.saved() for name, part in found.items() if part is not None}
 
 
 class Result(Documented):
@@ -88,7 +88,7 @@ class Answer(Result):
     there is none.  Of a loop `violation` too.
     """
 
-    YES: ClassVar[str]
+    _YES: ClassVar[str]
     """The property that is True where the answer is yes."""
 
     if TYPE_CHECKING:
@@ -114,7 +114,7 @@ class Answer(Result):
         """Refuse to be true or false."""
         raise InputError(
             f"this answer is {self.outcome!r}, and an answer is neither true nor false: "
-            f"ask .{self.YES}, which is True for a proof alone, or compare .outcome"
+            f"ask .{self._YES}, which is True for a proof alone, or compare .outcome"
         )
 
     def describe(self) -> str:
@@ -132,7 +132,7 @@ class Answer(Result):
     def stated(self) -> dict[str, Any]:
         """Outcome, scope, assumptions and numbers as plain data, units in the keys; the evidence left out."""
         return {
-            "format": self.FORMAT,
+            "format": self._FORMAT,
             "outcome": self.outcome,
             "claim": self.claim,
             "scope": self.scope.to_dict(),
@@ -162,7 +162,7 @@ class Answer(Result):
 class PassivityAnswer(Answer):
     """Whether a hand can take energy out of a loop."""
 
-    YES = "passive"
+    _YES = "passive"
 
     @property
     def passive(self) -> bool:

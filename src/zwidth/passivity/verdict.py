@@ -34,8 +34,8 @@ class Verdict(Found):
     numbers below then speak of the worst case (`device`, `environment`).
     """
 
-    FORMAT = "zwidth verdict 1"
-    PICTURE = "check_figure"
+    _FORMAT = "zwidth verdict 1"
+    _PICTURE = "check_figure"
 
     @cached_property
     def claim(self) -> str:
@@ -72,6 +72,10 @@ class Verdict(Found):
     def admissible_speed(self) -> float | None:
         """Up to which hands are safe [m/s; rad/s]; None where it is not known."""
         return None
+
+    def curve(self, points: int = 400) -> tuple[list[float], list[float]]:
+        """(frequency [Hz], damping asked for there [N·s/m]), for plotting only; of a law with H(z) alone."""
+        return [], []
 
     @property
     def limit(self) -> str:

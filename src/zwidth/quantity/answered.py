@@ -2,7 +2,7 @@
 
     @dataclass(frozen=True, repr=False)
     class Served(Documented):
-        FORMAT = "zwidth served 1"
+        _FORMAT = "zwidth served 1"
         missed: int = answered("not taken: the loop came a period late", key="missed_samples", row="missed")
         energy: float = answered("given to the handle", unit="J", row="the actuator gave the handle")
 
@@ -12,7 +12,7 @@
 
 Its plain data, the rows of its report, the tables of docs/json.md and its parameters in docs/api.md are made
 of that.  Fields come first, then what is computed, in the order in which they stand.  What a class puts into
-its plain data besides stands in its `BESIDES`, by key: the same tables have it.
+its plain data besides stands in its `_BESIDES`, by key: the same tables have it.
 """
 
 from __future__ import annotations

@@ -16,15 +16,15 @@ from zwidth.showing import Picture, Shown
 class Documented(Shown):
     """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
 
-    FORMAT: ClassVar[str] = ""
+    _FORMAT: ClassVar[str] = ""
     """Under which its document is known; "" for a part of another one."""
 
-    PICTURE: ClassVar[str] = ""
+    _PICTURE: ClassVar[str] = ""
     """What draws it, among the plots above."""
 
     def to_dict(self) -> dict[str, Any]:
         """It as plain data, a unit in every key of a physical quantity."""
-        return {**({"format": self.FORMAT} if self.FORMAT else {}), **data_of(self)}
+        return {**({"format": self._FORMAT} if self._FORMAT else {}), **data_of(self)}
 
     def to_json(self) -> str:
         """`to_dict` as JSON text, every exact number digit for digit."""
@@ -64,7 +64,7 @@ class Documented(Shown):
 
     def pictures(self) -> Iterable[Picture]:
         """Its picture for a notebook, small; none where there is nothing to draw."""
-        if not self.PICTURE:
+        if not self._PICTURE:
             return ()
         try:
             figure = self.figure()
@@ -79,9 +79,9 @@ class Documented(Shown):
 
     def figure(self) -> Any:
         """What `plot` returns."""
-        if not self.PICTURE:
+        if not self._PICTURE:
             raise InputError(f"there is no picture of this {type(self).__name__}")
-        return getattr(above("plots"), self.PICTURE)(self)
+        return getattr(above("plots"), self._PICTURE)(self)
 
 
 _SMALL = 80

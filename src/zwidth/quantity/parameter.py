@@ -48,8 +48,8 @@ else:
             return kinds[1]
 
 
-Uncertain = Reads[Exact | Interval, Given]
-UncertainOrNone = Reads[Exact | Interval | None, Given | None]
+Uncertain = Reads[Exact | Any, Given]  # seldom an interval: whoever gave none reads float(device.damping)
+UncertainOrNone = Reads[Exact | Any | None, Given | None]
 Certain = Reads[Exact, RealLike]
 CertainOrNone = Reads[Exact | None, RealLike | None]
 Numbers = Reads[tuple[Exact, ...], Iterable[RealLike]]

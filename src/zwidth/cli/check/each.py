@@ -147,7 +147,7 @@ class EachDevice(Documented):
     `measured`: from which stiffness on it was seen to shake, where that was measured [N/m; N·m/rad].
     """
 
-    FORMAT: ClassVar[str] = "zwidth each 1"
+    _FORMAT: ClassVar[str] = "zwidth each 1"
 
     verdicts: Mapping[str, Verdict]
     measured: Mapping[str, float] = field(default_factory=dict)
@@ -173,7 +173,7 @@ class EachDevice(Documented):
             }
             for name, verdict in self.verdicts.items()
         ]
-        return {"format": self.FORMAT, "devices": devices}
+        return {"format": self._FORMAT, "devices": devices}
 
     def report(self) -> Iterator[Part]:
         """On how many it is passive and up to where on all, the table, and what it rests on."""

@@ -301,9 +301,9 @@ def wall_in_words(wall: Wall | MatrixWall) -> str:
     from zwidth.model.environment.wall import Wall
 
     if isinstance(wall, Wall):
-        damper = float(wall.damping)  # type: ignore[arg-type]  # no interval: an arm refuses them
+        damper = float(wall.damping)  # no interval: an arm refuses them
         more = f", {shown(damper, 'N*s/m', 6)}" if damper else ""
-        return f"{shown(float(wall.stiffness), 'N/m', 6)}{more} in every direction"  # type: ignore[arg-type]
+        return f"{shown(float(wall.stiffness), 'N/m', 6)}{more} in every direction"
     import numpy as np
 
     units = ("N, m, rad", "N, m, s, rad") if wall.turns else ("N/m", "N·s/m")

@@ -165,7 +165,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
     not say, and `confidence` how often such a finding is right, among faults simulated as the weights were
     learnt from."""
 
-    BESIDES = (
+    _BESIDES = (
         (
             "swing_m, swing_counts",
             "where something vibrates, from one side to the other; in encoder counts, null where the "

@@ -59,7 +59,7 @@ class HeldJoint:
 class HeldJoints(Documented):
     """The verdicts on the joints of one arm, held at a target by springs and dampers."""
 
-    FORMAT: ClassVar[str] = "zwidth held joints 1"
+    _FORMAT: ClassVar[str] = "zwidth held joints 1"
 
     joints: tuple[HeldJoint, ...] = answered("each with its verdict, which holds proof or motion")
     notes: tuple[str, ...] = answered("what was taken for granted")

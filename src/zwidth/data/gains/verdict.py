@@ -173,7 +173,7 @@ class JointVerdict:
 class GainsVerdict(Documented):
     """The verdicts on all joints of an arm."""
 
-    FORMAT: ClassVar[str] = "zwidth gains 1"
+    _FORMAT: ClassVar[str] = "zwidth gains 1"
 
     gains: ArmGains = answered("what the files say, of a `family` of arms", stands_as={"family": "family"})
     joints: tuple[JointVerdict, ...] = answered("the verdict on each joint")

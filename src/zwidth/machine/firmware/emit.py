@@ -67,8 +67,8 @@ class Emitted(Result):
         Text by file name.
     """
 
-    FORMAT = "zwidth emitted law 1"
-    BESIDES = (
+    _FORMAT = "zwidth emitted law 1"
+    _BESIDES = (
         (
             "prefix, target, number",
             "what names begin with, the machine, and its numbers: `double`, `float` or `fixed`",
@@ -188,7 +188,7 @@ class Emitted(Result):
         linear = self.device.motion == "linear"
         force, stiffness = ("N", "N_per_m") if linear else ("N_m", "N_m_per_rad")
         return {
-            "format": self.FORMAT,
+            "format": self._FORMAT,
             "prefix": self.prefix,
             "target": self.target,
             "number": self.machine.number,

@@ -60,7 +60,7 @@ class Channel(ABC):
 _HEAD = struct.Struct("<4sddd")
 _MARK = b"zw\x02\x00"
 _SUM = struct.Struct("<I")
-_SIZES = [_HEAD.size + _SUM.size, _HEAD.size + Packet.SIZE + _SUM.size]
+_SIZES = [_HEAD.size + _SUM.size, _HEAD.size + Packet._SIZE + _SUM.size]
 
 
 class Frame(NamedTuple):

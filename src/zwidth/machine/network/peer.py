@@ -73,7 +73,7 @@ class PeerReport(Documented):
         late = f"late by {p50} ms median, {p99} ms in 99 %, {most} ms at most"
         yield f"{self.steps} steps, {self.late} by more than a period too late; {late}"
         rows = [link.row(name) for name, link in self.links.items()]
-        yield Table(heads=[LinkReport.HEADS], rows=rows, lefts=1)
+        yield Table(heads=[LinkReport._HEADS], rows=rows, lefts=1)
 
 
 class Peer:
@@ -229,7 +229,7 @@ class LinkReport(Documented):
         """Six lines."""
         yield Table(rows=self.rows())
 
-    HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+    _HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""

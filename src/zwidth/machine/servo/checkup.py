@@ -40,8 +40,8 @@ _SHARE = 0.999
 class Checkup(Documented):
     """How this machine does as the host of a periodic loop."""
 
-    FORMAT: ClassVar[str] = "zwidth doctor 1"
-    PICTURE: ClassVar[str] = "plot_lateness"
+    _FORMAT: ClassVar[str] = "zwidth doctor 1"
+    _PICTURE: ClassVar[str] = "plot_lateness"
 
     sample_period: Exact = answered("T of the loop that was run", unit="s")
     ordinary: Lateness = answered("turns without real-time priority")

@@ -56,7 +56,7 @@ class Served(Documented):
 class ServoReport(Served):
     """What a served loop did."""
 
-    FORMAT = "zwidth served 1"
+    _FORMAT = "zwidth served 1"
 
     later: int = answered(
         "samples later than 99 % of those measured before, or whose force was: the verdict leaves them out",
@@ -180,7 +180,7 @@ _BOTH = ("leader", "follower")
 class PairServoReport(Served):
     """What a served pair did; of two numbers the first is the leader's."""
 
-    FORMAT = "zwidth served pair 1"
+    _FORMAT = "zwidth served pair 1"
 
     lateness: tuple[float, float, float] = answered(
         "how late samples were",

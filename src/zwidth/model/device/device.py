@@ -38,7 +38,7 @@ _ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
 _OF_A_BODY = ("mass", "damping", "coulomb_friction", "stiction")
 _DIGITS = 6
 """Of a number in a notebook."""
-_ZeroIfUnknown = Reads[Exact | Interval, Given | None]
+_ZeroIfUnknown = Reads[Exact | Any, Given | None]
 
 
 @dataclass(frozen=True, init=False)

@@ -23,7 +23,7 @@ from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.model.environment.environment import CouplingLaw, Environment, RationalFunction, Stepped
 from zwidth.model.scene.element import GROUND, Element, Ties, read_node, ties
-from zwidth.quantity.parameter import part
+from zwidth.quantity.parameter import Reads, part
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
@@ -77,7 +77,9 @@ class Scene(Environment, Shown):
         node is held by nothing but what may let go of it.
     """
 
-    elements: tuple[Element, ...] = part("elements", _elements, meaning="masses, springs, … and their nodes")
+    elements: Reads[tuple[Element, ...], Iterable[Element]] = part(
+        "elements", _elements, meaning="masses, springs, … and their nodes"
+    )
     port: str = part("node", _port, "handle", meaning="the node that the hand holds")
 
     def __post_init__(self) -> None:

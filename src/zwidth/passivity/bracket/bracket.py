@@ -31,9 +31,9 @@ from zwidth.quantity.text import at_least, at_most, in_words, shown
 class Bracket(Result):
     """The last value of a parameter that is proved passive, and the first that is refuted."""
 
-    FORMAT = "zwidth limit 1"
-    PICTURE = "limit_figure"
-    BESIDES = (
+    _FORMAT = "zwidth limit 1"
+    _PICTURE = "limit_figure"
+    _BESIDES = (
         (
             "proved_passive_N_per_m, proved_active_N_per_m",
             "the two sides, in the unit of the parameter; null where none was found",

@@ -51,8 +51,8 @@ from zwidth.quantity.text import told_quantity
 class CouplingCondition(Answer):
     """Whether a coupling on a device is passive before every passive environment."""
 
-    FORMAT = "zwidth coupling condition 1"
-    YES = "holds"
+    _FORMAT = "zwidth coupling condition 1"
+    _YES = "holds"
 
     device: Device = known("its encoder and Coulomb friction play no part")
     stiffness: Exact = known("K_c", quantity="stiffness")

@@ -60,7 +60,7 @@ _RATIOS = 400
 class CouplingDesign(Result):
     """A virtual coupling made for a device."""
 
-    FORMAT = "zwidth coupling design 1"
+    _FORMAT = "zwidth coupling design 1"
 
     device: Device = known("the one it is for")
     stiffness: Exact = known("K_c", quantity="stiffness")

@@ -48,8 +48,8 @@ Binding = Literal["device damping", "coupling and environment"]
 class TransformedCondition(Answer):
     """Whether the theorem promises passivity for a device, a coupling and a class of environments."""
 
-    FORMAT = "zwidth transformed condition 1"
-    YES = "holds"
+    _FORMAT = "zwidth transformed condition 1"
+    _YES = "holds"
     certificate = None  # the proof is on paper
     witness = None
 

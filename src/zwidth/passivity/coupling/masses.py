@@ -55,7 +55,7 @@ class MassLimit:
 class PassiveMasses(Result):
     """All masses of a body behind a coupling with which the loop is passive, single ones apart."""
 
-    FORMAT = "zwidth passive masses 1"
+    _FORMAT = "zwidth passive masses 1"
 
     device: Device = known("its encoder and Coulomb friction play no part")
     body: CoupledBody = known("coupling, body and integrator; `verdict` is about its own mass")

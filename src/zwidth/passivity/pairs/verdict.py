@@ -120,9 +120,9 @@ def has_and_needs(device: Device, key: str, need: float | None) -> str:
 class PairVerdict(PassivityAnswer):
     """Whether two hands can take energy out of a pair of arms."""
 
-    FORMAT: ClassVar[str] = "zwidth pair 1"
-    PICTURE: ClassVar[str] = "plot_pair"
-    BESIDES = (
+    _FORMAT: ClassVar[str] = "zwidth pair 1"
+    _PICTURE: ClassVar[str] = "plot_pair"
+    _BESIDES = (
         (
             "power_ratio",
             "how often the work of the follower's hand counts, K_l/K_f; 1 where both springs are the same",

@@ -47,8 +47,8 @@ from zwidth.quantity.text import told_quantity
 class PassivityIndices(PassivityAnswer):
     """What `passivity_indices` found."""
 
-    FORMAT = "zwidth indices 1"
-    PICTURE = "indices"
+    _FORMAT = "zwidth indices 1"
+    _PICTURE = "indices"
 
     input: PassivityIndex = answered(
         "the input feedforward index ν; null where it is infinite", stands_as={"input_index": "value"}

@@ -50,18 +50,18 @@ class SampleBand:
 class SampleTable(Result):
     """What the samples of a table show."""
 
-    PICTURE: ClassVar[str] = "sample_table_figure"
-    HEAD: ClassVar[str]
+    _PICTURE: ClassVar[str] = "sample_table_figure"
+    _HEAD: ClassVar[str]
     """What the worst of a band is."""
-    NAMES: ClassVar[tuple[str, str]]
+    _NAMES: ClassVar[tuple[str, str]]
     """What the values are, of one port and of several."""
-    UNIT: ClassVar[str]
-    WORST: ClassVar[str]
+    _UNIT: ClassVar[str]
+    _WORST: ClassVar[str]
     """The key of the worst of them."""
-    FOR_A_PROOF: ClassVar[str]
-    BOUND: ClassVar[float]
+    _FOR_A_PROOF: ClassVar[str]
+    _BOUND: ClassVar[float]
     """What the values of a passive system keep to."""
-    BEYOND: ClassVar[int]
+    _BEYOND: ClassVar[int]
     """On which side of it they do not: 1 above, −1 below."""
 
     frequencies: tuple[float, ...] = known("f_k, ascending", unit="Hz")
@@ -140,9 +140,9 @@ class SampleTable(Result):
         """Where, and what would prove more."""
         if self.bands:
             rows = [[f"{b.low:.6g}", f"{b.high:.6g}", f"{b.worst:.9g}"] for b in self.bands[:_MOST_SHOWN]]
-            yield Table(rows=rows, heads=[["from", "to", self.HEAD], ["Hz", "Hz", ""]])
+            yield Table(rows=rows, heads=[["from", "to", self._HEAD], ["Hz", "Hz", ""]])
         else:
-            yield self.FOR_A_PROOF
+            yield self._FOR_A_PROOF
 
     def told_possible(self) -> str:
         """How many samples are undecided within their error, as a sentence that may follow; or nothing."""
@@ -152,7 +152,7 @@ class SampleTable(Result):
     def to_dict(self) -> dict[str, Any]:
         """It as plain data, units in the keys."""
         return {
-            "format": self.FORMAT,
+            "format": self._FORMAT,
             "samples": len(self.frequencies),
             "ports": self.ports,
             "lowest_Hz": self.frequencies[0],
@@ -160,14 +160,14 @@ class SampleTable(Result):
             "violated_samples": sum(self.violated),
             "possible_samples": sum(self.possible),
             "violated_Hz": [[band.low, band.high] for band in self.bands],
-            self.WORST: self.worst[0],
-            f"{self.WORST}_at_Hz": self.worst[1],
+            self._WORST: self.worst[0],
+            f"{self._WORST}_at_Hz": self.worst[1],
             "assumptions": list(self.assumptions),
         }
 
     def worst_of(self, values: Sequence[float]) -> float:
         """The one that breaks the bound most, or is nearest to it."""
-        return max(values) if self.BEYOND > 0 else min(values)
+        return max(values) if self._BEYOND > 0 else min(values)
 
     def told_broken(self) -> str:
         """What happens at the samples that break the bound: the end of a sentence."""
@@ -260,14 +260,14 @@ def _runs(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
 class ResponseTable(SampleTable):
     """What the samples of a table show; `values` are λ_min(½(G + Gᴴ)), of one axis Re G."""
 
-    FORMAT = "zwidth response table 1"
-    HEAD: ClassVar[str] = "least Re G"
-    NAMES: ClassVar[tuple[str, str]] = ("Re G", "least eigenvalue of ½(G + Gᴴ)")
-    UNIT: ClassVar[str] = "unit of G"
-    WORST: ClassVar[str] = "least_real_part"
-    FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational G(s) and ask passivity_indices of the fit."
-    BOUND: ClassVar[float] = 0.0
-    BEYOND: ClassVar[int] = -1
+    _FORMAT = "zwidth response table 1"
+    _HEAD: ClassVar[str] = "least Re G"
+    _NAMES: ClassVar[tuple[str, str]] = ("Re G", "least eigenvalue of ½(G + Gᴴ)")
+    _UNIT: ClassVar[str] = "unit of G"
+    _WORST: ClassVar[str] = "least_real_part"
+    _FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational G(s) and ask passivity_indices of the fit."
+    _BOUND: ClassVar[float] = 0.0
+    _BEYOND: ClassVar[int] = -1
 
     @property
     def least(self) -> tuple[float, float]:
@@ -331,14 +331,14 @@ def _below(sample: Any, value: float, level: Fraction) -> bool:
 class ScatteringTable(SampleTable):
     """What the samples of a table show; `values` are ‖S(f_k)‖, the largest singular values."""
 
-    FORMAT = "zwidth scattering table 1"
-    HEAD: ClassVar[str] = "largest ‖S‖"
-    NAMES: ClassVar[tuple[str, str]] = ("|S|", "largest singular value of S")
-    UNIT: ClassVar[str] = "1"
-    WORST: ClassVar[str] = "largest_gain"
-    FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational S(s) and ask scattering_passivity of the fit."
-    BOUND: ClassVar[float] = 1.0
-    BEYOND: ClassVar[int] = 1
+    _FORMAT = "zwidth scattering table 1"
+    _HEAD: ClassVar[str] = "largest ‖S‖"
+    _NAMES: ClassVar[tuple[str, str]] = ("|S|", "largest singular value of S")
+    _UNIT: ClassVar[str] = "1"
+    _WORST: ClassVar[str] = "largest_gain"
+    _FOR_A_PROOF: ClassVar[str] = "For a proof fit a rational S(s) and ask scattering_passivity of the fit."
+    _BOUND: ClassVar[float] = 1.0
+    _BEYOND: ClassVar[int] = 1
 
     @property
     def gains(self) -> tuple[float, ...]:

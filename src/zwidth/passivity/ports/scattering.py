@@ -45,7 +45,7 @@ from zwidth.showing import Part, Shown
 class ScatteringPassivity(PassivityAnswer):
     """What `scattering_passivity` found."""
 
-    FORMAT = "zwidth scattering 1"
+    _FORMAT = "zwidth scattering 1"
 
     signs: tuple[int, ...] = answered("Σ: which sign each b has in u = a − Σb and y = a + Σb")
     input: PassivityIndex = known("the input index of u → y; ≥ 0 where S is bounded real")

@@ -56,8 +56,8 @@ Array = npt.NDArray[np.float64]
 class ToleratedActivity(Result):
     """How much negative damping a hand may show below a frequency, proved and refuted."""
 
-    FORMAT = "zwidth activity 1"
-    BESIDES = (
+    _FORMAT = "zwidth activity 1"
+    _BESIDES = (
         (
             "contact_kept, contact_broken",
             "`activity_N_s_per_m`, the largest that is proved or null, its `scope`, and its "

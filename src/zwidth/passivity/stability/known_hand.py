@@ -50,8 +50,8 @@ _HALVINGS = 8
 class Stability(Answer):
     """Whether the loop with a known hand decays, and how far it is from not doing so."""
 
-    FORMAT = "zwidth stability 1"
-    YES = "stable"
+    _FORMAT = "zwidth stability 1"
+    _YES = "stable"
     witness = None
 
     outcome: Outcome = known(

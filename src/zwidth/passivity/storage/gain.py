@@ -45,7 +45,7 @@ class Gain(Evidence):
         Against which the hand moves, and what the device takes out.
     """
 
-    PICTURE = "cycle"
+    _PICTURE = "cycle"
 
     document: dict[str, Any]
     motion: Motion

@@ -56,8 +56,8 @@ class AvailableStorage(PassivityAnswer):
         True where a time that was given ended the search: another machine may decide.
     """
 
-    FORMAT = "zwidth worst hand 1"
-    PICTURE = "storage"
+    _FORMAT = "zwidth worst hand 1"
+    _PICTURE = "storage"
 
     outcome: Outcome
     scope: Scope

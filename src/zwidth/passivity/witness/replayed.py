@@ -54,8 +54,8 @@ _DEPTH = 1e-3
 class ReplayedMotion(Result):
     """What the hand did, and what came out in the simulator: no proof, and nothing that the checker reads."""
 
-    KEY = "hand_motion"
-    FORMAT = "zwidth hand motion 1"
+    _KEY = "hand_motion"
+    _FORMAT = "zwidth hand motion 1"
     device: Device
     environment: Environment
     motion: Motion
@@ -117,7 +117,7 @@ class ReplayedMotion(Result):
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data, for `zwidth simulate`."""
         return {
-            "format": self.FORMAT,
+            "format": self._FORMAT,
             "kind": REPLAYED,
             unit_key("sample_period"): self.sample_period,
             "energy_J": self.energy,

@@ -50,9 +50,9 @@ Array = npt.NDArray[np.float64]
 class NullSpace(PassivityAnswer):
     """What is known of a wall and a null-space spring together."""
 
-    FORMAT = "zwidth null space 1"
-    PICTURE = "null_space_figure"
-    BESIDES = (
+    _FORMAT = "zwidth null space 1"
+    _PICTURE = "null_space_figure"
+    _BESIDES = (
         ("fast_motion", "null, or a small one to and fro at the rest that takes energy out"),
         (
             "slow_loop",

@@ -58,8 +58,8 @@ _FIRST = 0.05
 class PostureMap(PassivityAnswer):
     """How stiff a wall may be, at the postures that were tried."""
 
-    FORMAT = "zwidth postures 1"
-    PICTURE = "postures_figure"
+    _FORMAT = "zwidth postures 1"
+    _PICTURE = "postures_figure"
     certificate = witness = None
 
     question: Question = answered(

@@ -46,9 +46,9 @@ class Workspace(PassivityAnswer):
     "active": at one point a motion of the hand takes energy out, `motion`.  "undecided": none of these.
     """
 
-    FORMAT = "zwidth workspace 1"
-    PICTURE = "workspace_figure"
-    BESIDES = (
+    _FORMAT = "zwidth workspace 1"
+    _PICTURE = "workspace_figure"
+    _BESIDES = (
         (
             "outcome, claim",
             '`"passive"`, `"passive without encoder steps"`, `"theorem"`, `"active"` or '

@@ -131,9 +131,9 @@ def draw_sample_table(axes: Axes, found: SampleTable) -> None:
     f, values, errors = (np.array(row) for row in (found.frequencies, found.values, found.errors))
     broken, possible = np.array(found.violated), np.array(found.possible)
     low, high = _height(found, values, errors)
-    edge = low if found.BEYOND < 0 else high
-    axes.axhspan(found.BOUND, edge, color=RED, alpha=0.12, lw=0, label="of no passive system")
-    axes.axhline(found.BOUND, color=BLACK, lw=0.8)
+    edge = low if found._BEYOND < 0 else high
+    axes.axhspan(found._BOUND, edge, color=RED, alpha=0.12, lw=0, label="of no passive system")
+    axes.axhline(found._BOUND, color=BLACK, lw=0.8)
     _draw_bands(axes, found)
     for these, colour, mark, name in (
         (~possible, BLUE, "o", "no violation shown"),
@@ -148,7 +148,7 @@ def draw_sample_table(axes: Axes, found: SampleTable) -> None:
     axes.set_xscale("log" if f[0] > 0 and f[-1] > _LOGARITHMIC * f[0] else "linear")
     axes.set_ylim(low, high)
     axes.set_xlabel(label("frequency"))
-    axes.set_ylabel(with_unit(found.NAMES[found.ports > 1], found.UNIT))
+    axes.set_ylabel(with_unit(found._NAMES[found.ports > 1], found._UNIT))
     legend(axes)
     count = int(broken.sum())
     heading(
@@ -171,7 +171,7 @@ def _draw_bands(axes: Axes, found: SampleTable) -> None:
 
 def _height(found: SampleTable, values: np.ndarray, errors: np.ndarray) -> tuple[float, float]:
     """All samples with their errors, the bound, and some room beyond it."""
-    low = min(float((values - errors).min()), found.BOUND)
-    high = max(float((values + errors).max()), found.BOUND)
+    low = min(float((values - errors).min()), found._BOUND)
+    high = max(float((values + errors).max()), found._BOUND)
     room = _ROOM * ((high - low) or 1.0)
     return low - room, high + room

@@ -143,7 +143,7 @@ def _pictures(verdict: Answer) -> Iterator[Picture]:
         for name, draw in panels_of(verdict).items():
             figure = panel_figure(draw, verdict, _WIDTH, _HEIGHTS.get(name, 3.8))
             yield Picture(encoded(figure, "svg"), "svg+xml", _SAYS[name](verdict), _CAPTIONS[name])
-    elif verdict.PICTURE:
+    elif verdict._PICTURE:
         yield Picture(encoded(verdict.figure(), "svg"), "svg+xml", verdict.describe())
 
 

@@ -177,7 +177,7 @@ def compare(
     chosen = standard_laws(device, wall) if laws is None else dict(laws)
     if not chosen:
         raise InputError("laws is empty: there is nothing to compare")
-    touches = standard_touches(motor, float(wall.stiffness))  # type: ignore[arg-type]
+    touches = standard_touches(motor, float(wall.stiffness))
     known = found_motions(motor, wall, fastest)
     traces: dict[str, dict[str, xr.Dataset]] = {}
     attacks: dict[str, Attack] = {}
@@ -193,7 +193,7 @@ def compare(
     if progress is not None:
         progress(len(chosen), len(chosen))
     return LawComparison(
-        scores=_dataset(traces, attacks, known_of, times, float(wall.stiffness)),  # type: ignore[arg-type]
+        scores=_dataset(traces, attacks, known_of, times, float(wall.stiffness)),
         attacks=attacks,
         standings=known_of,
         traces=traces,
@@ -269,7 +269,7 @@ FAST = 0.2
 def _damped(device: Device, wall: Wall, **how: object) -> Wall:
     """The wall with virtual damping K T/2: half a sample ahead."""
     period = device.exact("sample_period")
-    return wall.replace(damping=wall.stiffness.fraction * period / 2, **how)  # type: ignore[union-attr]
+    return wall.replace(damping=wall.stiffness.fraction * period / 2, **how)
 
 
 def _coupled(device: Device, wall: Wall) -> Environment:
@@ -284,7 +284,7 @@ def _through(make: Callable[[Device, Wall], RenderingLaw]) -> Law:
 
 def _half_sample_damping(device: Device, wall: Wall) -> float:
     """K T/2."""
-    return float(wall.stiffness) * float(device.exact("sample_period")) / 2  # type: ignore[arg-type]
+    return float(wall.stiffness) * float(device.exact("sample_period")) / 2
 
 
 def _model() -> dict[str, Any]:

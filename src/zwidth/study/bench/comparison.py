@@ -53,8 +53,8 @@ class LawComparison(Documented):
         that place.  None for a handle.
     """
 
-    FORMAT = "zwidth laws 1"
-    BESIDES = (
+    _FORMAT = "zwidth laws 1"
+    _BESIDES = (
         ("advice", "what to do, in a paragraph"),
         ("touched_at_radius_m", "of a device that turns: how far from its axis"),
         (
@@ -125,7 +125,7 @@ class LawComparison(Documented):
         """The scores of each law, a unit in every key, what is known of it, and the advice."""
         laws = {name: self._known(name) | self._scored(name) for name in map(str, self.scores["law"].values)}
         touched = {} if self.radius is None else {"touched_at_radius_m": self.radius}
-        return {"format": self.FORMAT, "advice": self.advice, **touched, "laws": laws}
+        return {"format": self._FORMAT, "advice": self.advice, **touched, "laws": laws}
 
     def _what(self) -> str:
         """What was compared, in a few words."""
@@ -192,7 +192,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     `device`: what they were simulated on.
     `wall`: what was to be rendered, of one stiffness; its damping is left out.
     """
-    wanted = float(wall.stiffness)  # type: ignore[arg-type]
+    wanted = float(wall.stiffness)
     alone: Any = check(device, Wall(wall.stiffness), iterate=False)
     limit, unit = alone.max_stiffness, device.unit("stiffness")
     words = [
@@ -229,7 +229,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
 def told_of(scores: xr.Dataset, wall: Wall) -> list[str]:
     """The laws that the answer names: the stiffest of each kind of proof, and the quiet one."""
     proved = (scores.where(scores["status"] == status, drop=True) for status in ("passive", "theorem"))
-    quiet = _quiet(scores, float(wall.stiffness))  # type: ignore[arg-type]
+    quiet = _quiet(scores, float(wall.stiffness))
     return [*(_stiffest(some) for some in proved if some.sizes["law"]), *([] if quiet is None else [quiet])]
 
 

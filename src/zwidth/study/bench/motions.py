@@ -272,7 +272,7 @@ def found_motions(device: Device, wall: Wall, fastest: RealLike) -> dict[str, Fl
 
 
 def _relatives(device: Device, wall: Wall) -> dict[str, Wall]:
-    damping = wall.stiffness.fraction * device.exact("sample_period") / 2  # type: ignore[union-attr]
+    damping = wall.stiffness.fraction * device.exact("sample_period") / 2
     return {
         "the wall alone": wall,
         "the wall with damping K T/2": wall.replace(damping=damping),

@@ -54,7 +54,7 @@ class PairComparison(Documented):
         By scheme: `press` and `stroke`.
     """
 
-    FORMAT: ClassVar[str] = "zwidth pairs 1"
+    _FORMAT: ClassVar[str] = "zwidth pairs 1"
 
     scores: xr.Dataset
     verdicts: Mapping[str, PairVerdict]
@@ -74,7 +74,7 @@ class PairComparison(Documented):
             }
             for name, verdict in self.verdicts.items()
         }
-        return {"format": self.FORMAT, "schemes": schemes}
+        return {"format": self._FORMAT, "schemes": schemes}
 
     def report(self) -> Iterable[Part]:
         """Which are passive, and a table, a row for each."""

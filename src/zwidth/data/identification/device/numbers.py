@@ -34,7 +34,7 @@ BINS = 6
 class IdentifiedNumbers:
     """A device as a log shows it."""
 
-    BESIDES = (
+    _BESIDES = (
         ("format", '`"zwidth identification 1"`'),
         ("log", "`samples`, `runs`, `duration_s`, `channels`; only from the command line"),
         ("confidence", "of the intervals"),

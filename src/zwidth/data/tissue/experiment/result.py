@@ -54,7 +54,7 @@ class TissueTest(Documented):
         the file holds one.
     """
 
-    BESIDES = (
+    _BESIDES = (
         ("kind, seen_as", "the test as it was fitted; as the data look"),
         ("samples, duration_s", "that were fitted"),
         ("model, not_told_apart", "the one that is taken; others that this test does not tell from it"),

@@ -75,9 +75,9 @@ def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldV
 class HeldVerdict(PassivityAnswer):
     """Whether the hand on one arm of a pair can take energy out while a known hand holds the other."""
 
-    FORMAT: ClassVar[str] = "zwidth held pair 1"
-    PICTURE: ClassVar[str] = "plot_held_pair"
-    BESIDES = (
+    _FORMAT: ClassVar[str] = "zwidth held pair 1"
+    _PICTURE: ClassVar[str] = "plot_held_pair"
+    _BESIDES = (
         ("held", "object with `arm` and `hand`, in words"),
         (
             "largest_stiffness_N_per_m_with_any_such_hand",

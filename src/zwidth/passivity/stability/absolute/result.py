@@ -45,7 +45,7 @@ class Proved:
 class AbsoluteStability(Result):
     """What `absolute_stability` found."""
 
-    FORMAT = "zwidth absolute stability 1"
+    _FORMAT = "zwidth absolute stability 1"
 
     proved: tuple[Proved, ...] = known(
         "by criterion: circle, Tsypkin, Jury–Lee, Zames–Falb for any wall, Zames–Falb for odd ones"
