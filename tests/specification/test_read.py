@@ -253,6 +253,10 @@ CONTACT = '[environment]\ntype = "hunt-crossley"\n'
 
 BAD: list[tuple[str | bytes, str]] = [
     (bad("dampng = 1\nrate = 1"), 'file0.toml: [device]: a device has no "dampng"; did you mean "damping"?'),
+    (bad("friction = 1\nrate = 1"), 'did you mean "damping" or "coulomb_friction"?'),
+    (bad("damping = 1\nmax_torque = 1\nrate = 1"), 'did you mean "force_limit"?'),
+    (DEVICE + '[environment]\ntype = "wall"\nkp = 1', 'has no "kp"; did you mean "stiffness"?'),
+    (DEVICE + WALL + "kd = 1", 'did you mean "virtual_damping"?'),
     (bad("damping = 1"), "rate"),
     (DEVICE + CONTACT + "exponent = 2\n", 'type "hunt-crossley" needs stiffness'),
     (DEVICE + CONTACT + 'stiffness = "300 N/m"\n', 'stiffness is a plain number; got "300 N/m"'),

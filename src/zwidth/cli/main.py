@@ -11,7 +11,6 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from difflib import get_close_matches
 from typing import NoReturn
 
 from zwidth import __version__
@@ -139,16 +138,9 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     inner = underscored.removeprefix("--transmission.").replace("-", "_")
     if inner != underscored and inner in NOT_OF_IT:
         return f"there is no option {plain(name)}: {NOT_OF_IT[inner]}"
-    meant = [option for option in _GAINS.get(underscored.removeprefix("--"), ()) if option in options]
-    if meant:
-        return f"there is no option {plain(name)}; it is {' or '.join(meant)} here"
-    near = get_close_matches(underscored[2:62], [option.lstrip("-") for option in options], n=1)
-    hint = f"did you mean --{near[0]}?" if near else f"see {child.prog} --help"
+    keys = [option.lstrip("-").replace("-", "_") for option in options]
+    hint = suggestion(underscored.lstrip("-").replace("-", "_"), keys, "--{}", f"see {child.prog} --help")
     return f"there is no option {plain(name)}; {hint}"
-
-
-_GAINS = {"kp": ("--stiffness",), "kd": ("--virtual-damping", "--local-damping")}
-"""What the gains of a controller are called here."""
 
 
 WELCOME = """\

@@ -320,6 +320,8 @@ def _times(a: Unit, b: Unit, power: int) -> Unit:
 
 
 def _suggestion(name: str) -> str:
+    if name in ("counts", "count", "cpr", "ppr", "lines"):
+        return "; counts in a turn are given as counts_per_turn"
     every = [*_JOINED, *_UNITS]
     same = [known for known in every if known.lower() == name.lower()]
     near = same or get_close_matches(name, every, n=1, cutoff=0.75)

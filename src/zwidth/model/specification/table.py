@@ -6,7 +6,7 @@ came from the command line, even after the two were merged.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -104,7 +104,37 @@ def quoted(text: str) -> str:
     return f'"{plain(text)}"'
 
 
-def suggestion(text: str, known: Iterable[str]) -> str:
-    """What may have been meant, or else everything that is possible."""
-    near = get_close_matches(text[:60], list(known), n=1)
-    return f'did you mean "{near[0]}"?' if near else f"it may be: {', '.join(known)}"
+def suggestion(text: str, known: Iterable[str], option: str = "", more: str = "") -> str:
+    """What may have been meant, as a key or an `option`, or else `more`: everything that is possible."""
+    names = list(known)
+    if found := _called(text.lower().replace("-", "_"), names) or get_close_matches(text[:60], names, n=1):
+        written = (option.format(one.replace("_", "-")) if option else quoted(one) for one in found)
+        return f"did you mean {' or '.join(written)}?"
+    return more or f"it may be: {', '.join(names)}"
+
+
+def _called(word: str, known: Sequence[str]) -> list[str]:
+    """Of what people call so the keys that are known here; of keys between bars the first."""
+    for keys, words in _WORDS.items():
+        if word in words.split():
+            found = ([one for one in either.split("|") if one in known] for either in keys.split())
+            return [one[0] for one in found if one]
+    return []
+
+
+_WORDS = {
+    "damping coulomb_friction": "friction",
+    "damping": "viscous viscosity viscous_friction viscous_damping device_damping",
+    "coulomb_friction": "coulomb dry_friction static_friction",
+    "counts_per_turn resolution": "counts ppr cpr counts_per_rev counts_per_revolution pulses_per_revolution",
+    "resolution counts_per_turn": "encoder encoder_resolution position_resolution",
+    "delay": "latency lag dead_time time_delay",
+    "force_limit": "max_torque max_force torque_limit maximum_torque maximum_force peak_torque peak_force",
+    "rate cutoff": "frequency sample_rate sampling_rate sample_frequency loop_rate update_rate fs",
+    "sample_period": "dt time_step sample_time sampling_time",
+    "stiffness": "k kp spring spring_constant spring_stiffness wall_stiffness",
+    "virtual_damping|damping local_damping": "kd damper",
+    "damping virtual_damping": "b",
+    "virtual_damping": "damping wall_damping",
+}
+"""What people call a quantity, by the keys that it has here."""
