@@ -387,7 +387,8 @@ def _patches(found: xr.Dataset) -> list[Patch]:
 def _shade(outcome: str) -> str:
     """Its colour; what is passive in a light one, so that it differs in grey too."""
     strong = {"passive": 0.45, "active": 1.0}.get(outcome, 0.7)
-    return to_hex([1 - strong * (1 - part) for part in to_rgb(TOLD[outcome].colour)])
+    red, green, blue = (1 - strong * (1 - part) for part in to_rgb(TOLD[outcome].colour))
+    return to_hex((red, green, blue))
 
 
 def _curve(axes: Axes, found: xr.Dataset, name: str) -> None:
