@@ -78,6 +78,13 @@ def headline(word: str, colour: str, claim: str) -> Padding:
     return below(line)
 
 
+def claimed(outcome: str, claim: str) -> Padding:
+    """The same of an answer about passivity, in the colour of its outcome."""
+    from zwidth.passivity.scope import TOLD  # loaded by now
+
+    return headline(outcome, TOLD[outcome].terminal, claim)
+
+
 def grid(rows: Iterable[Row], width: int = 0) -> Table:
     """Names, in a column of at least some width, and beside each its text."""
     table = _folding(2, (0, 2))
