@@ -16,7 +16,7 @@ from zwidth.passivity import value_iteration_fallback as gap
 from zwidth.passivity.advice import in_lines
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.witness.motion import Motion
-from zwidth.quantity.text import to_json
+from zwidth.quantity.text import shown, shown_at_least, to_json
 
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3, name="paddle"
@@ -251,8 +251,8 @@ def test_undecided_between_the_bounds(monkeypatch):
     assert verdict.outcome == "undecided"
     assert verdict.certificate is None
     assert verdict.witness is None
-    assert f"{low:.6g}" in verdict.claim
-    assert f"{high:.6g}" in verdict.claim
+    assert shown(low, "N") in verdict.claim
+    assert shown_at_least(high, "N") in verdict.claim
     assert zw.check(device.replace(coulomb_friction=high * 1.001), law).is_proved
     assert assert_evidence(zw.check(device.replace(coulomb_friction=low * 0.4), law)).outcome == "active"
 
@@ -380,7 +380,7 @@ def test_assumptions_name_what_was_not_given():
     assert "contact made and broken" in full
     uncertain = zw.check(PADDLE.replace(damping=(0.2, 0.3)), zw.Wall(100))
     assert "every value within damping" in "\n".join(uncertain.assumptions)
-    assert uncertain.claim.endswith("out of this loop, for any damping within its range.")
+    assert "out of this loop, for any damping within its range: stiffness may go up to" in uncertain.claim
     both = zw.check(PADDLE.replace(damping=(0.2, 0.3)), zw.Wall(zw.Interval(80, 100)))
     assert "for any damping and value of the environment within their ranges" in both.claim
 

@@ -10,7 +10,6 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.spoken import answers_as_typed, answers_in, spoken
 from zwidth.quantity.text import (
-    enough,
     in_a_table,
     in_words,
     quantity_unit,
@@ -125,7 +124,7 @@ def test_a_number_in_a_table():
 def test_a_limit_is_rounded_to_the_side_on_which_it_holds():
     assert shown_at_most(416.96, "N/m") == "416.9 N/m"
     assert shown_at_least(416.92, "N/m") == "417 N/m"
-    assert enough(7.12345612e-05, "N*m*s/rad") == "71.2346 µN·m·s/rad"
+    assert shown_at_least(7.12345612e-05, "N*m*s/rad", 6) == "71.2346 µN·m·s/rad"
     with answers_in("deg"):
         assert shown_at_most(1.0, "N*m/rad") == "0.01745 N·m/deg"
         assert shown_at_least(1.0, "N*m/rad") == "0.01746 N·m/deg"

@@ -78,6 +78,13 @@ def headline(word: str, colour: str, claim: str) -> Padding:
     return below(line)
 
 
+def claimed(outcome: str, claim: str) -> Padding:
+    """The same of an answer about passivity, in the colour of its outcome."""
+    from zwidth.passivity.scope import TOLD  # loaded by now
+
+    return headline(outcome, TOLD[outcome].terminal, claim)
+
+
 def grid(rows: Iterable[Row], width: int = 0) -> Table:
     """Names, in a column of at least some width, and beside each its text."""
     table = _folding(2, (0, 2))
@@ -194,14 +201,6 @@ def levels(values: Sequence[float], fancy: bool) -> str:
 _SAMPLES_SHOWN = 48
 
 
-def joules(witness: Moves) -> str:
-    """What comes out, and what one round of a cycle gives."""
-    total = shown(witness.energy, "J")
-    if witness.motion.rounds > 1 and len(witness.motion.repeats) == 1:
-        return f"{total} ({shown(witness.energy_per_cycle, 'J')} per cycle)"
-    return total
-
-
 def _said_of_a_replay(witness: Moves) -> str:
     from zwidth.passivity.result import Evidence  # loaded by now
 
@@ -228,7 +227,9 @@ def motion_lines(witness: Moves, fancy: bool) -> Iterator[Text]:
     for part in witness.motion.repeats:
         if part.times > 1:
             yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")
-    yield Text(f"extracts {joules(witness)}{_said_of_a_replay(witness)}", style="bold")
+    is_cycle = witness.motion.rounds > 1 and len(witness.motion.repeats) == 1
+    each = f" ({shown(witness.energy_per_cycle, 'J')} per cycle)" if is_cycle else ""
+    yield Text(f"extracts {shown(witness.energy, 'J')}{each}{_said_of_a_replay(witness)}", style="bold")
     first = witness.positions[:_SAMPLES_SHOWN]
     more = " …" if len(witness.positions) > len(first) else ""
     yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")

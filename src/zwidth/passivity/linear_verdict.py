@@ -21,7 +21,7 @@ from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import at_most, enough, in_words, shown
+from zwidth.quantity.text import at_most, in_words, shown, shown_at_least
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -226,7 +226,7 @@ class LinearVerdict(Verdict):
             rows.append(("largest passive stiffness", shown(most, unit["stiffness"], 6)))
         else:
             rows.append(("largest passive gain", shown(at_most(self.max_gain, "1"), "times this law", 6)))
-        rows.append(("required device damping", enough(self.required_damping, unit["damping"])))
+        rows.append(("required device damping", shown_at_least(self.required_damping, unit["damping"], 6)))
         rows.append(("critical frequency", shown(self.critical_frequency, "Hz", 6)))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
@@ -234,9 +234,6 @@ class LinearVerdict(Verdict):
         if self.admissible_speed is not None:
             speed = shown(self.admissible_speed, self.device.unit("velocity"), 6)
             rows.append(("slower hands are safe up to", speed))
-        if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
-            damping = enough(float(self.decision.contact_damping), unit["damping"])
-            rows.append(("damping, contact broken too", damping))
         return [*rows, *super().rows()]
 
 

@@ -27,7 +27,7 @@ from zwidth.passivity.wording import (
 )
 from zwidth.quantity.answered import known
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_words, shown
+from zwidth.quantity.text import in_words, shown, shown_at_least
 
 if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
@@ -108,7 +108,7 @@ class Found(PassivityAnswer):
 def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
     """What was found, how much and, of advice, what to do: the sentence of every report."""
     if verdict.outcome == "active":
-        return with_what_to_do(_active(verdict), advice, "active") + _unwritten(verdict)
+        return _active(verdict, advice)
     proved = claim_of_passivity(verdict.scope, verdict.at_limit)
     if verdict.outcome == "passive":
         return with_what_to_do(proved, () if verdict.at_limit else advice, "passive")
@@ -125,27 +125,24 @@ def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
     return f"{proved}. {_of_one_that_leaves(verdict)}"
 
 
-def _active(verdict: Found) -> str:
-    moved = None if verdict.scope.transmission == "as given" else verdict.witness
-    if moved is not None:  # no motion of two bodies is more than replayed
-        return claim_of_a_motion(moved)
+def _active(verdict: Found, advice: Iterable[Advice]) -> str:
+    is_replayed = verdict.scope.transmission == "as given"  # no motion of two bodies is more than that
+    if verdict.witness is not None and not is_replayed:
+        return with_what_to_do(claim_of_a_motion(verdict.witness), advice, "active")
     assert verdict.violation is not None
-    return f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
-
-
-def _unwritten(verdict: Found) -> str:
-    if verdict.scope.transmission == "as given" or verdict.witness is not None:
-        return ""
-    return f" {UNWRITTEN}"
+    any_amount = f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
+    return with_what_to_do(any_amount, advice, "active") + ("" if is_replayed else f" {UNWRITTEN}")
 
 
 def _of_one_that_leaves(verdict: Found) -> str:
     """What is known of a hand that touches and leaves, and how much damping would do for each of them."""
     known = next(_by_bounded_hands(verdict), "Of one that touches and leaves nothing is proved or refuted.")
     decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
-    if decision is None or decision.contact_damping is None:
+    if decision is None or decision.contact_damping is None or decision.contact_friction is None:
         return known
-    needed = enough(float(decision.contact_damping), verdict.device.unit("damping"))
+    if decision.contact_friction > decision.setting.coulomb_friction:
+        return known
+    needed = shown_at_least(float(decision.contact_damping), verdict.device.unit("damping"))
     return f"{known} With a device damping of {needed} every hand would be covered."
 
 
@@ -230,8 +227,8 @@ def _not_found(verdict: Found) -> str:
     found = "Neither a proof for every hand nor a motion that takes energy out was found"
     unit = verdict.device.unit
     lacking = [
-        f"{in_words(need.name)} of {enough(need.needed, unit(need.name))} is proved enough, and there is "
-        f"{shown(need.has, unit(need.name), 6)}"
+        f"{in_words(need.name)} of {shown_at_least(need.needed, unit(need.name))} is proved enough, and "
+        f"there is {shown(need.has, unit(need.name))}"
         for need in verdict.needs
         if need.has < need.needed
     ]
@@ -262,8 +259,8 @@ def _open(decision: Decision) -> str:
     need, least = decision.sufficient_friction, decision.necessary_friction
     has = float(decision.setting.coulomb_friction)
     unit = GLOSSARY["coulomb_friction"].unit_for(decision.setting.motion)
-    does = "no amount is proved enough" if need is None else f"{enough(float(need), unit)} is enough"
-    edge = shown(least, unit, 6)
+    does = "no amount is proved enough" if need is None else f"{shown_at_least(float(need), unit)} is enough"
+    edge = shown(least, unit)
     below = (
         f"straddling an encoder edge should gain below {edge}, yet no such motion was found short enough"
         if has < least
@@ -271,7 +268,7 @@ def _open(decision: Decision) -> str:
     )
     return (
         "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: {does}, {below}, and the device has {shown(has, unit, 6)}."
+        f"is proved: {does}, {below}, and the device has {shown(has, unit)}."
     )
 
 
@@ -281,11 +278,12 @@ def _clamped(decision: Decision) -> str:
     if damping is None or friction is None:
         known = "and for this law and delay none that is enough."
     else:
-        loop, has, motion = decision.loop, float(decision.setting.coulomb_friction), decision.setting.motion
-        b, f = (GLOSSARY[name].unit_for(motion) for name in ("damping", "coulomb_friction"))
+        setting = decision.setting
+        b, f = (GLOSSARY[name].unit_for(setting.motion) for name in ("damping", "coulomb_friction"))
+        viscous, dry = shown_at_least(float(damping), b), shown_at_least(float(friction), f)
         known = (
-            f"and what is proved enough is not there: damping of {enough(float(damping), b)}, the device "
-            f"has {shown(float(loop.damping), b, 6)}; Coulomb friction of {enough(float(friction), f)}, it "
-            f"has {shown(has, f, 6)}."
+            f"and what is proved enough is not there: damping of {viscous}, the device has "
+            f"{shown(float(decision.loop.damping), b)}; Coulomb friction of {dry}, it has "
+            f"{shown(float(setting.coulomb_friction), f)}."
         )
     return f"Of a law whose force is clamped no exact condition is known, {known}"

@@ -15,7 +15,7 @@ from zwidth.passivity.outcome_evidence import Found, assumptions, claim, decided
 from zwidth.quantity.answered import answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_words, save_json, shown, told_quantity
+from zwidth.quantity.text import in_words, save_json, shown, shown_at_least, told_quantity
 from zwidth.showing import Lines, Part
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ class Verdict(Found):
         for need in self.needs:
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
             name = in_words(need.name)
-            rows.append((f"required {name}", enough(need.needed, unit)))
+            rows.append((f"required {name}", shown_at_least(need.needed, unit, 6)))
             rows.append((f"margin of {name}", shown(need.has - need.needed, unit, 6)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))

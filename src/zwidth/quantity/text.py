@@ -131,11 +131,6 @@ def shown_at_least(value: float | None, unit: str, digits: int = 4) -> str:
     return shown(at_least(value, unit, digits), unit, digits)
 
 
-def enough(value: float | None, unit: str) -> str:
-    """`shown` to six digits of a value from which on something holds, never rounded down."""
-    return shown(at_least(value, unit), unit, 6)
-
-
 def in_a_table(value: float, digits: int = 4) -> str:
     """A number without its unit; a whole one where there are more digits before the point."""
     return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.{digits}g}"

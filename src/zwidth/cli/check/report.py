@@ -22,8 +22,8 @@ from zwidth.cli.page import (
     bar,
     below,
     blocks,
+    claimed,
     grid,
-    headline,
     items,
     more_with_all,
     motion_in_short,
@@ -33,7 +33,6 @@ from zwidth.cli.page import (
     small_print,
 )
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import in_short, intervals
 from zwidth.quantity.glossary import GLOSSARY
@@ -48,7 +47,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.stability.active_hand import ToleratedActivity
 
 
-_FIRST = ("limit", "largest passive gain", "damping, contact broken too")
+_FIRST = ("limit", "largest passive gain")
 """Of the numbers: what a short report has; how stiff it may be stands in what to change."""
 
 _SLOW = "slower hands are safe up to"
@@ -67,7 +66,7 @@ def print_verdict(
     `ranges` is what holds over the ranges of a device of the catalogue.
     """
     with page() as out:
-        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
+        out.print(claimed(verdict.outcome, verdict.claim))
         if ranges is not None:
             blocks(out, _over(ranges, in_full))
         (_all if in_full else _few)(out, verdict, ranges is not None)

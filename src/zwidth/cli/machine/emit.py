@@ -91,12 +91,11 @@ def _give_out(found: Emitted, written: list[Path], as_json: bool) -> None:
     if as_json:
         print_json(found.to_json())
         return
-    from zwidth.cli.page import below, grid, headline, items, page, section
-    from zwidth.passivity.scope import TOLD
+    from zwidth.cli.page import below, claimed, grid, items, page, section
 
     law = ("law", found.environment.describe(found.device.motion))
     with page() as out:
-        out.print(headline(found.judged.outcome, TOLD[found.judged.outcome].terminal, found.claim))
+        out.print(claimed(found.judged.outcome, found.claim))
         out.print(below(grid([law, *found.numbers])))
         section(out, "assumes", items(found.beside, "dim"))
     say_written(*written)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from rich.table import Table as Lines
 from rich.text import Text
 
-from zwidth.cli.page import headline, items, more_with_all, page, section
+from zwidth.cli.page import claimed, items, more_with_all, page, section
 from zwidth.cli.pair.pair_report import print_pair
 from zwidth.data.gains import ArmGains, Controllers, GainsVerdict, HeldJoints, PassiveGains
 from zwidth.passivity.pairs import PairVerdict
@@ -21,7 +21,7 @@ def print_gains(verdict: GainsVerdict, in_full: bool = False) -> None:
     """Print the verdicts on standard output."""
     decided, better = verdict.tables()
     with page() as out:
-        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
+        out.print(claimed(verdict.outcome, verdict.claim))
         section(out, f"{verdict.gains.published.title}: {decided.caption}", [_set(decided)])
         section(
             out, "what is passive, each proved: with the kd of the file, and with the best", [_set(better)]
@@ -50,7 +50,7 @@ def print_held(found: HeldJoints, better: PassiveGains | None = None) -> None:
     """Print the verdicts on the joints of one arm, and the gains that were written."""
     parts = list(found.report())
     with page() as out:
-        out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
+        out.print(claimed(found.outcome, found.claim))
         section(out, "joint by joint", [_set(part) for part in parts if isinstance(part, Table)])
         if better is not None:
             share = f"{float(100 * better.share):g} % of b"
@@ -73,7 +73,7 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
     """Print impedances at the end, and the command that decides them."""
     with page() as out:
         claim = "An impedance at the end of the arm: it takes the arm to decide it."
-        out.print(headline("undecided", TOLD["undecided"].terminal, claim))
+        out.print(claimed("undecided", claim))
         for one in controllers.cartesian:
             rows = [
                 [name, f"{k:g}", f"{d:.4g}"]
@@ -102,7 +102,7 @@ def print_follower(gains: ArmGains) -> None:
     parts = list(gains.report())
     with page() as out:
         claim = "The leader feels nothing: these gains make no pair."
-        out.print(headline("undecided", TOLD["undecided"].terminal, claim))
+        out.print(claimed("undecided", claim))
         section(out, str(parts[0]), [_set(part) for part in parts if isinstance(part, Table)])
         section(out, "what they are", items(gains.notes, "dim"))
 

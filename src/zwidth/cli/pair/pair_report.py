@@ -14,8 +14,8 @@ from zwidth.cli.page import (
     Row,
     below,
     blocks,
+    claimed,
     grid,
-    headline,
     items,
     levels,
     more_with_all,
@@ -28,7 +28,6 @@ from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs import PairVerdict, PairWitness
 from zwidth.passivity.pairs.held import HeldVerdict, HeldWitness
 from zwidth.passivity.pairs.in_short import pair_in_short
-from zwidth.passivity.scope import TOLD
 from zwidth.quantity.text import quantity_unit, shown
 
 if TYPE_CHECKING:
@@ -49,7 +48,7 @@ def print_pair(verdict: PairVerdict | HeldVerdict, in_full: bool = False) -> Non
     """Print the report on standard output."""
     witness = verdict.witness if verdict.outcome == "active" else None
     with page() as out:
-        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
+        out.print(claimed(verdict.outcome, verdict.claim))
         (_all if in_full else _few)(out, verdict, witness)
 
 

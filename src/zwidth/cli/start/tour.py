@@ -11,11 +11,10 @@ from rich.console import Console
 from rich.text import Text
 
 from zwidth.cli.output import encodes, print_text, quiet_pipe
-from zwidth.cli.page import PICTURE, headline, items, motion_lines, page, section
+from zwidth.cli.page import PICTURE, claimed, items, motion_lines, page, section
 from zwidth.model.device import catalogue
 from zwidth.model.environment import Wall
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.scope import TOLD
 from zwidth.quantity.text import shown
 
 _SOFT, _STIFF, _QUICK = "300", "770", "2.6 kHz"
@@ -67,20 +66,16 @@ def _verdict(stiffness: str, rate: str | None = None) -> LinearVerdict:
     return verdict
 
 
-def _claim(out: Console, verdict: LinearVerdict) -> None:
-    out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
-
-
 def _passive(out: Console) -> None:
     verdict = _verdict(_SOFT)
-    _claim(out, verdict)
+    out.print(claimed(verdict.outcome, verdict.claim))
     largest = shown(verdict.max_stiffness, "N/m", 6)
     out.print(Text(f"largest passive stiffness  {largest}, limited by {verdict.limit}"))
 
 
 def _active(out: Console) -> None:
     verdict = _verdict(_STIFF)
-    _claim(out, verdict)
+    out.print(claimed(verdict.outcome, verdict.claim))
     if verdict.witness is not None:
         section(out, "the motion", motion_lines(verdict.witness, encodes(PICTURE)))
 
@@ -99,7 +94,8 @@ def _advice(out: Console) -> None:
 
 
 def _mended(out: Console) -> None:
-    _claim(out, _verdict(_STIFF, _QUICK))
+    verdict = _verdict(_STIFF, _QUICK)
+    out.print(claimed(verdict.outcome, verdict.claim))
 
 
 STEPS = (

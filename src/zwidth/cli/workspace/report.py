@@ -30,12 +30,11 @@ _SHOWN = 1e-6
 
 def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[str] = ()) -> None:
     """Print the verdict and what to change on standard output."""
-    from zwidth.cli.page import blocks, grid, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.scope import TOLD
+    from zwidth.cli.page import blocks, claimed, grid, items, more_with_all, page, section, small_print
     from zwidth.passivity.wording import in_short
 
     with page() as out:
-        out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))
+        out.print(claimed(space.outcome, space.claim))
         if in_full:
             every = list(_changes(space))
             blocks(out, [*_numbers(space), *(("left out", text) for text in without)])
@@ -195,8 +194,7 @@ def _print(
     *asked: tuple[str, str],
 ) -> None:
     """The verdict, the numbers, what was asked and what is assumed, on standard output."""
-    from zwidth.cli.page import blocks, headline, items, more_with_all, page, section, small_print
-    from zwidth.passivity.scope import TOLD
+    from zwidth.cli.page import blocks, claimed, items, more_with_all, page, section, small_print
     from zwidth.passivity.wording import in_short
 
     question = found.question
@@ -209,7 +207,7 @@ def _print(
         *last,
     ]
     with page() as out:
-        out.print(headline(found.outcome, TOLD[found.outcome].terminal, found.claim))
+        out.print(claimed(found.outcome, found.claim))
         if in_full:
             blocks(out, list(found.rows()), about)
             section(out, "assumes", items(found.assumptions, "dim"))

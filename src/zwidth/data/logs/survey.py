@@ -219,7 +219,7 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
     """T [s], and where it comes from."""
     if not timed:
         assert stated is not None
-        text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"
+        text = f"sample period {shown(stated, 's', 9)} as stated; there are no stamps to compare with"
         return stated, Finding(kind="sample period", text=text)
     mean, count = survey.mean_interval, max(1, survey.intervals.number)
     uncertainty = (
@@ -227,7 +227,8 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
     ) / count + 1e-12 * mean
     inferred = settled(mean, uncertainty)
     if stated is None:
-        return inferred, Finding(kind="sample period", text=f"sample period {inferred:.9g} s from the stamps")
+        text = f"sample period {shown(inferred, 's', 9)} from the stamps"
+        return inferred, Finding(kind="sample period", text=text)
     off = mean / stated - 1
     if abs(off) > _LOT:
         raise InputError(
@@ -240,9 +241,8 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
             "one of the two clocks is off"
         )
         return stated, Finding(kind="stated period", text=text)
-    return stated, Finding(
-        kind="sample period", text=f"sample period {stated:.9g} s, stated and by the stamps"
-    )
+    text = f"sample period {shown(stated, 's', 9)}, stated and by the stamps"
+    return stated, Finding(kind="sample period", text=text)
 
 
 def clock_findings(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Finding]:

@@ -18,8 +18,9 @@ from flint import fmpq, fmpq_poly
 
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import Average, Decay, RationalFunction, certain, multiply
-from zwidth.quantity.exact import Exact, Interval, RealLike, ends
+from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.parameter import Parametric, Reads, Uncertain, parameter, part
+from zwidth.quantity.text import shown
 
 LONGEST_TIME_CONSTANT = 1000
 """Largest time constant of a velocity filter [s]."""
@@ -111,8 +112,7 @@ class OnePole(Parametric):
 
     def describe(self) -> str:
         """In words."""
-        tau = self.time_constant
-        return f"one-pole filter of {tau if isinstance(tau, Interval) else f'{float(tau):.6g}'} s"
+        return f"one-pole filter of {shown(self.time_constant, 's', 6)}"
 
     def transfer(self, period: Fraction) -> RationalFunction:
         """(z − 1)/((T + τ) z − τ) [1/s]."""

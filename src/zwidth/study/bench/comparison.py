@@ -372,8 +372,8 @@ def legend(scores: xr.Dataset) -> str:
 def explained(scores: xr.Dataset) -> list[str]:
     """Which energy is meant, and by the proofs without a certificate, where there are some."""
     gave = (
-        "law gave: in a tap, the most that the law had given beyond what it had taken; of a passive one the "
-        "device's friction takes all of it, and the hand gets none"
+        "law gave: in a tap, the most that the law had given beyond what it had taken; of one that is proved "
+        "the device's friction takes all of it, and the hand gets none"
     )
     theorem = [f"{ON_PAPER}: a theorem, by a proof on paper, no certificate"]
     return [gave, *(theorem if (scores["status"] == "theorem").any() else [])]
