@@ -187,6 +187,29 @@ def test_what_the_address_cannot_say_is_a_message_and_tabs_go_by_arrows(page: Pa
     expect(first).to_be_focused()
 
 
+def test_the_verdict_is_read_before_any_script_runs(browser: Browser, address: str) -> None:
+    page = browser.new_page(java_script_enabled=False)
+    page.goto(address)
+    expect(verdict(page).locator(".badge")).to_have_text("passive")
+    expect(verdict(page)).to_contain_text("No motion of the hand")
+    page.close()
+
+
+@one_size
+def test_pictures_are_of_something_and_the_loop_is_played(page: Page, address: str) -> None:
+    """No frame around nothing: a loop that is passive has no motion to show, and a spring no inside."""
+    opened(page, f"{address}#motion")
+    shown = page.get_by_role("tabpanel")
+    expect(shown).to_contain_text("there is no motion that takes energy out")
+    assert not [one.bounding_box() for one in shown.locator("canvas").all() if one.is_visible()]
+    page.get_by_role("tab", name="Play").click()
+    stage = page.frame_locator("iframe").get_by_role("slider", name="The hand on the handle")
+    stage.click()
+    page.get_by_role("tab", name="Touch").click()
+    expect(shown.locator("canvas").first).to_be_visible()
+    expect(shown).to_contain_text("Largest force")
+
+
 def test_two_people_do_not_disturb_each_other(browser: Browser, address: str) -> None:
     first, second = (opened(browser.new_page(), address) for _ in range(2))
     typed = entry(first, "stiffness")

@@ -15,6 +15,7 @@ import pytest
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.quantity.spoken import answers_as_typed
+from zwidth.show.explorer import computing
 from zwidth.show.explorer.computing import answered
 from zwidth.show.explorer.session import Session
 from zwidth.show.explorer.shown import Explorer
@@ -110,6 +111,23 @@ def test_a_verdict_of_a_number_that_nobody_measured_stays_on_the_page() -> None:
     form.event = {"kind": "typed", "path": "device.rate", "value": "1 kHz", "number": 4}
     form.event = {"kind": "press", "path": "json", "value": None, "number": 5}
     assert form.told.get("error", "") == ""
+
+
+@pytest.mark.parametrize(
+    ("law", "inside"), [(zw.Wall(770), True), (zw.PulseTransferFunction([20], [1]), False)]
+)
+def test_a_touch_is_shaded_inside_a_wall_alone(law: object, inside: bool) -> None:
+    from zwidth.show.explorer.pictures import TouchPictures
+
+    pictures = TouchPictures()
+    assert not pictures.position.visible
+    state = State.of(zw.catalogue.device("haptic-paddle"), law)  # type: ignore[arg-type]
+    pictures.show(computing.touched(state), "linear")
+    assert pictures.position.visible
+    shade = pictures.position.renderers[1]
+    depths = shade.data_source.data["inside"]
+    assert (shade.visible, pictures.position.legend[0].items[1].visible) == (inside, inside)
+    assert min(depths) == 0 < max(depths) == max(shade.data_source.data["position"])
 
 
 def test_importing_zwidth_loads_no_panel() -> None:

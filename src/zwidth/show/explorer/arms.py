@@ -150,7 +150,8 @@ class LinkPicture:
         up, k_unit = drawn_in("stiffness", pair.motion)
         self._stairs.data = {"left": ends[:-1], "right": ends[1:], "top": [up * k for k in stiffness[1:]]}
         self._here.data = {"delay": [factor * here[0]], "stiffness": [up * here[1]]}
-        self._x.update(start=0, end=factor * delays[-1])
+        self.figure.visible = True
+        self._x.update(start=-0.02 * factor * delays[-1], end=factor * delays[-1])
         self._y.update(start=0, end=1.25 * up * max([*stiffness, here[1]]))
         self.figure.xaxis[0].axis_label = f"link delay, each way [{unit}]"
         self.figure.yaxis[0].axis_label = f"stiffness [{k_unit}]"
@@ -158,5 +159,4 @@ class LinkPicture:
 
     def clear(self) -> None:
         """Nothing to draw."""
-        self._stairs.data = {"left": [], "right": [], "top": []}
-        self._here.data = {"delay": [], "stiffness": []}
+        self.figure.visible = False

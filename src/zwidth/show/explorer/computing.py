@@ -46,7 +46,7 @@ CELLS = 48
 
 
 class Touch(NamedTuple):
-    """A touch: times [s], positions [m; rad], forces [N; N·m] and the work of the hand [J]."""
+    """A touch: times [s], positions [m; rad], forces [N; N·m], work of the hand [J]; whether of a wall."""
 
     times: list[float]
     positions: list[float]
@@ -56,6 +56,7 @@ class Touch(NamedTuple):
     operator: str
     extracted: float
     peak_force: float
+    one_sided: bool
 
 
 class Region(NamedTuple):
@@ -123,7 +124,7 @@ def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> T
     force = float(np.nanmax(np.abs(trace["actuator_force"].values)))
     return Touch(
         shown.tolist(), curve("position"), curve("hand_force"), curve("actuator_force"), curve("hand_work"),
-        hand.describe(device.motion), float(ledger(trace).extracted), force,
+        hand.describe(device.motion), float(ledger(trace).extracted), force, environment.unilateral,
     )  # fmt: skip
 
 

@@ -30,5 +30,8 @@
   window.addEventListener("hashchange", () => named() && open(named(), false));
   open(named() || tabs[0], false);
   // what listens is drawn after this has run: it asks which one is open
-  window.addEventListener("zwidth-drawn", () => open(tabs.find((tab) => tab.tabIndex === 0), false));
+  window.addEventListener("zwidth-drawn", () => {
+    document.getElementById("first")?.remove();
+    open(tabs.find((tab) => tab.tabIndex === 0), false);
+  });
 })();

@@ -10,7 +10,6 @@ from bokeh.models import (
     ColumnDataSource,
     DataRange1d,
     HoverTool,
-    LabelSet,
     Legend,
     LinearColorMapper,
     Range1d,
@@ -125,15 +124,15 @@ class CriterionPicture:
     def show(self, verdict: Verdict | None) -> str:
         """Draw it; a sentence about what is seen."""
         if not isinstance(verdict, LinearVerdict):
-            self._curve.data = {"frequency": [], "needed": [], "lacking": [], "has": []}
-            self._peak.data = {"frequency": [], "needed": []}
+            self.figure.visible = False
             return "This law has no H(z), so there is no criterion over frequency."
         frequencies, needs = refined_curve(verdict)
         has, motion = float(verdict.decision.loop.damping), verdict.device.motion
         low, high = damping_range(needs, has)
         factor, told = drawn_in("damping", motion)
         finite = [factor * (need if isfinite(need) else high) for need in needs]
-        self._x.update(start=0, end=0.5 / float(verdict.decision.loop.period))
+        self.figure.visible = True
+        self._x.update(start=0, end=0.51 / float(verdict.decision.loop.period))
         self._y.update(start=factor * low, end=factor * high)
         self.figure.yaxis[0].axis_label = f"damping [{told}]"
         needed = array(finite)  # arrays are sent as they are, lists number by number
@@ -173,7 +172,7 @@ class PlanePicture:
             d.name: f"{d.name} at {_stiffness(float(largest_spring_of(d)), d.motion)}"
             for d in complete_devices()
         }
-        self._here = ColumnDataSource({"beta": [], "sigma": [], "colour": [], "text": []})
+        self._here = ColumnDataSource({"beta": [], "sigma": [], "colour": []})
         self._line = ColumnDataSource({"beta": [], "sigma": []})
         self._x, self._y = Range1d(0.05, 50), Range1d(0.05, 5000)
         self.figure: Any = new_figure(
@@ -183,25 +182,26 @@ class PlanePicture:
         self.figure.add_layout(BoxAnnotation(left=0.5, bottom=0.5, fill_color=GREEN, fill_alpha=0.14))
         for dimension in ("height", "width"):
             self.figure.add_layout(Line(location=0.5, dimension=dimension, line_color=GREY))
-        self.figure.line("beta", "sigma", source=self._line, color=BLUE, line_width=2)
+        named = "this loop, were its wall stiffer or softer"
+        self.figure.line("beta", "sigma", source=self._line, color=BLUE, line_width=2, legend_label=named)
         known = ColumnDataSource(
             {
                 "beta": [place[0] for place in self._others.values()],
                 "sigma": [place[1] for place in self._others.values()],
                 "text": list(texts.values()),
-                "name": list(texts),
             }
         )
-        squares = self.figure.scatter("beta", "sigma", source=known, marker="square", size=8, color=GREY)
-        self.figure.add_layout(_names(known, "name"))
+        squares = self.figure.scatter(
+            "beta", "sigma", source=known, marker="square", size=8, color=GREY, legend_label=", ".join(texts)
+        )
         self.figure.scatter("beta", "sigma", source=self._here, size=13, color="colour")
-        self.figure.add_layout(_names(self._here, "text"))
+        legend_above(self.figure, columns=1)
         self.figure.add_tools(HoverTool(renderers=[squares], tooltips=[("", "@text")]))
 
     def show(self, verdict: Verdict | None) -> str:
         """Draw it; a sentence about what is seen."""
         if not _has_place(verdict):
-            self._here.data = {"beta": [], "sigma": [], "colour": [], "text": []}
+            self._here.data = {"beta": [], "sigma": [], "colour": []}
             self._line.data = {"beta": [], "sigma": []}
             return f"{_NO_PLACE} {self._catalogue}"
         assert isinstance(verdict, LinearVerdict)
@@ -216,12 +216,11 @@ class PlanePicture:
         shares = (max(x[0] / beta, y[0] / sigma), min(x[1] / beta, y[1] / sigma))
         self._line.data = {"beta": [beta * s for s in shares], "sigma": [sigma * s for s in shares]}
         passive = point.region == "globally stable"
-        text = f"K = {_stiffness(float(stiffness), device.motion)}"
-        colour = GREEN if passive else RED
-        self._here.data = {"beta": [beta], "sigma": [sigma], "colour": [colour], "text": [text]}
+        self._here.data = {"beta": [beta], "sigma": [sigma], "colour": [GREEN if passive else RED]}
         return (
-            f"This loop is at β = {number(beta)}, σ = {number(sigma)}: {point.region}. Green, both at least "
-            "½: passive. A stiffer wall lies further down and to the left. " + self._catalogue
+            f"This loop, K = {_stiffness(float(stiffness), device.motion)}, is at β = {number(beta)}, "
+            f"σ = {number(sigma)}: {point.region}. Green, both at least ½: "
+            f"passive. A stiffer wall lies further down and to the left. {self._catalogue}"
         )
 
 
@@ -237,13 +236,6 @@ def _squares(placed: int, known: int) -> str:
 def _stiffness(value: float, motion: str) -> str:
     factor, unit = drawn_in("stiffness", motion)
     return f"{number(value * factor)} {unit}"
-
-
-def _names(source: ColumnDataSource, column: str) -> LabelSet:
-    return LabelSet(
-        x="beta", y="sigma", text=column, source=source, x_offset=8, y_offset=-16, text_color=GREY,
-        text_font_size="12px",
-    )  # fmt: skip
 
 
 def _has_place(verdict: Verdict | None) -> bool:
@@ -302,8 +294,9 @@ class RegionPicture:
             "height": [up * region.stiffest],
         }
         self._here.data = {"damping": [across * damping], "stiffness": [up * stiffness]}
-        self._x.update(start=0, end=across * region.most_damping)
-        self._y.update(start=0, end=up * region.stiffest)
+        self.figure.visible = True
+        self._x.update(start=-0.02 * across * region.most_damping, end=across * region.most_damping)
+        self._y.update(start=-0.02 * up * region.stiffest, end=up * region.stiffest)
         self.figure.xaxis[0].axis_label = f"virtual damping B [{b_unit}]"
         self.figure.yaxis[0].axis_label = f"virtual stiffness K [{k_unit}]"
         factor, unit = drawn_in("velocity", motion)
@@ -319,8 +312,7 @@ class RegionPicture:
 
     def clear(self) -> None:
         """Nothing to draw."""
-        self._image.data = {"kinds": [], "width": [], "height": []}
-        self._here.data = {"damping": [], "stiffness": []}
+        self.figure.visible = False
 
 
 TOUCH, ENERGY = "Touch", "Energy"
@@ -330,12 +322,16 @@ class TouchPictures:
     """Position and forces over time; and, over the same time, the work of the hand as a filled area."""
 
     def __init__(self) -> None:
-        self._source = ColumnDataSource()
-        self.clear()
+        columns = ("time", "position", "inside", "hand", "actuator", "in_", "out")
+        self._source = ColumnDataSource({name: [] for name in columns})
         time = DataRange1d(range_padding=0)
         self.position: Any = new_figure("time [s]", "position", x_range=time, height=230)
-        self.position.add_layout(BoxAnnotation(bottom=0, fill_color=GREY, fill_alpha=0.15))
-        self.position.line("time", "position", source=self._source, color=BLUE, line_width=2)
+        self.position.line(
+            "time", "position", source=self._source, color=BLUE, line_width=2, legend_label="handle"
+        )
+        self._inside = self.position.varea(
+            "time", 0, "inside", source=self._source, color=BLUE, alpha=0.25, legend_label="inside the wall"
+        )
         self.force: Any = new_figure("time [s]", "force", x_range=time, height=250)
         self.force.line("time", "hand", source=self._source, color=ORANGE, legend_label="hand, into the wall")
         self.force.line(
@@ -348,13 +344,18 @@ class TouchPictures:
         self.energy.varea(
             "time", 0, "out", source=self._source, color=RED, alpha=0.6, legend_label="got out by the hand"
         )
-        for made in (self.force, self.energy):
+        for made in self._all:
             legend_above(made)
+        self.clear()
+
+    @property
+    def _all(self) -> tuple[Any, ...]:
+        return self.position, self.force, self.energy
 
     def clear(self) -> None:
         """Nothing to draw."""
-        columns = ("time", "position", "hand", "actuator", "in_", "out")
-        self._source.data = {name: [] for name in columns}
+        for made in self._all:
+            made.visible = False
 
     def show(self, touch: Touch, motion: str) -> tuple[str, str]:
         """Draw it; a sentence about each picture."""
@@ -365,17 +366,21 @@ class TouchPictures:
         self._source.data = {
             "time": touch.times,
             "position": [x * value for value in touch.positions],
+            "inside": [x * max(value, 0.0) for value in touch.positions],
             "hand": [f * value for value in touch.hand_forces],
             "actuator": [f * value for value in touch.actuator_forces],
             "in_": [w * max(value, 0.0) for value in touch.works],
             "out": [w * min(value, 0.0) for value in touch.works],
         }
+        for made in self._all:
+            made.visible = True
+        self._inside.visible = self.position.legend[0].items[1].visible = touch.one_sided
         self.position.yaxis[0].axis_label = f"position [{x_unit}]"
         self.force.yaxis[0].axis_label = f"force [{f_unit}]"
         self.energy.yaxis[0].axis_label = f"work of the hand [{w_unit}]"
         peak, peak_unit = scale([touch.peak_force], force)
         most = f"{number(touch.peak_force * peak)} {peak_unit}"
-        said = f"{touch.operator}. Shaded: inside the wall. Largest force {most}."
+        said = f"{touch.operator}. Largest force {most}."
         out, unit = scale([touch.extracted], "J")
         if touch.extracted > 0:
             energy = f"The hand got out {number(touch.extracted * out)} {unit} more than it had put in."

@@ -157,6 +157,8 @@ class MotionPictures:
         self.energy: Any = new_figure("time", "energy", x_range=time, height=200)
         self.energy.varea("time", 0, "energy", source=self._source, color=RED, alpha=0.4)
         self.energy.line("time", "energy", source=self._source, color=RED, line_width=2)
+        self._all = self.position, self.force, self.energy
+        self.clear()
 
     def show(self, played: Replay, motion: str) -> str:
         """Draw it; a sentence about what is seen."""
@@ -178,16 +180,17 @@ class MotionPictures:
         self.position.yaxis[0].axis_label = f"position [{x_unit}]"
         self.force.yaxis[0].axis_label = f"actuator [{f_unit}]"
         self.energy.yaxis[0].axis_label = f"energy out [{w_unit}]"
-        for made in (self.position, self.force, self.energy):
+        for made in self._all:
             made.xaxis[0].axis_label = f"time [{time}]"
+            made.visible = True
         shown = f"{played.caption[:1].upper()}{played.caption[1:]}"
         return f"{shown}: {number(energies[-1])} {w_unit} come out of what is shown."
 
     def clear(self) -> None:
         """Nothing to draw."""
         self.player.motion = {}
-        self._source.data = {"time": [], "position": [], "energy": []}
-        self._steps.data = {"time": [], "force": []}
+        for made in self._all:
+            made.visible = False
 
 
 LAWS = "Laws"
@@ -198,23 +201,16 @@ NONE = "Switch laws on under “Laws in the chain”; each acts on what the one 
 def compared_table(rows: Sequence[Row], motion: str) -> Html:
     """A row for each chain."""
     unit = GLOSSARY["force"].unit_for(motion)
-    heads = ("chain", "outcome", "energy the hand got out", "largest force", "claim")
+    heads = ("chain", "outcome", "energy the hand got out", "largest force")
     body = (
-        row(
-            (
-                one.name,
-                _marked(one),
-                _amount(one.extracted, "J"),
-                _amount(one.peak_force, unit),
-                one.message or one.claim,
-            )
+        join(
+            row((one.name, _marked(one), _amount(one.extracted, "J"), _amount(one.peak_force, unit))),
+            element("tr", element("td", one.message or one.claim, colspan="4", **{"class": "quiet"})),
         )
         for one in rows
     )
     table = element("table", element("thead", row(heads, "th")), element("tbody", *body))
-    return element(
-        "div", table, **{"class": "numbers", "tabindex": "0", "role": "region", "aria-label": "laws compared"}
-    )
+    return element("div", table, **{"class": "numbers"})
 
 
 def _marked(one: Row) -> Html:
@@ -242,18 +238,23 @@ class Frame(Told):
 
     _esm = """
 export function render({ model }) {
-  const frame = document.createElement("iframe");
-  frame.title = "play with this loop";
-  frame.setAttribute("sandbox", "allow-scripts allow-downloads");
-  const draw = () => { frame.hidden = !model.html; frame.srcdoc = model.html; };
+  const root = document.createElement("div");
+  const draw = () => {
+    const frame = document.createElement("iframe"); // anew: of one that was hidden Chromium lays out nothing
+    frame.title = "play with this loop";
+    frame.setAttribute("sandbox", "allow-scripts allow-downloads");
+    frame.srcdoc = model.html;
+    root.replaceChildren(...(model.html ? [frame] : []));
+  };
   model.on("html", draw);
   draw();
-  return frame;
+  return root;
 }
 """
     _stylesheets = [  # noqa: RUF012  # as Panel has it
-        ":host { display: block; width: 100%; } iframe[hidden] { display: none; }"
-        "iframe { border: 0; width: 100%; height: 60rem; border-radius: 6px; }"
+        ":host { display: block; width: 100%; }"
+        "iframe { display: block; border: 0; width: 100%; height: 81rem; border-radius: 6px; }"
+        "@media (max-width: 52rem) { iframe { height: 100rem; } }"
     ]
 
 
