@@ -31,6 +31,7 @@ from zwidth.native.compiled import Array
 from zwidth.quantity.exact import RealLike, ends
 from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import shown, told_quantity
+from zwidth.showing import Shown
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -46,7 +47,7 @@ LEAST_SHARE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class MeasurementPlan:
+class MeasurementPlan(Shown):
     """How to move a device so that its limit becomes known.
 
     Parameters
@@ -124,9 +125,9 @@ class MeasurementPlan:
         seen = self.speed is None or found.speed >= self.speed
         return seen and found.strokes >= FEWEST_STROKES and high - low <= 2 * self.precision * value
 
-    def __repr__(self) -> str:
+    def report(self) -> Iterator[str]:
         """The protocol for a person."""
-        return "\n".join(_protocol(self))
+        return _protocol(self)
 
 
 def _protocol(plan: MeasurementPlan) -> Iterator[str]:
