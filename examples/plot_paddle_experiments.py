@@ -69,14 +69,14 @@ for stiffness, trace in second.items():
 # softer push buzzes earlier, and none below 2f_c/Δ.  The dowel's limit is found by
 # trying every stiffness.
 
-tried = np.arange(250.0, 801.0, 10.0)
+candidates = np.arange(250.0, 801.0, 10.0)
 
 
 def dowel_limit(device):
     batch = zw.simulation.simulate_batch(
-        device, zw.Wall(1), dowel, 4.0, vary={"environment.stiffness": tried}
+        device, zw.Wall(1), dowel, 4.0, vary={"environment.stiffness": candidates}
     )
-    return tried[np.argmax(batch.swing.values > 1e-3)]
+    return candidates[np.argmax(batch.swing.values > 1e-3)]
 
 
 def soft_limit(device, force):
@@ -187,7 +187,7 @@ print(f"friction at the edge: {needed[0]:.3f} to {needed[1]:.3f} N, in the place
 
 step = np.arange(95.0, 161.0, 0.5)
 SPRING = {"stiffness": 500.0, "speed": 0.002, "start": -0.001}  # reaches the edge with F
-changes: dict[str, tuple[hands.Operator, dict]] = {
+ways: dict[str, tuple[hands.Operator, dict]] = {
     "a push alone": (soft, {}),
     "a finger of 500 N/m": (hands.Finger(force=0.135 + 500 * 2.24e-3, **SPRING), {}),
     "a finger without damping": (hands.SoftTouch(damping=0.0), {}),
@@ -206,7 +206,7 @@ def begins(device, hand, swing):
     return step[np.argmax(found)] if found.any() else np.nan
 
 
-for name, (hand, change) in changes.items():
+for name, (hand, change) in ways.items():
     begin = [
         [begins(device.replace(**change), hand, swing) for device in (coarse, slow)] for swing in (1e-8, 1e-6)
     ]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import copy
 import json
 import pickle
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterator
+from functools import cache, reduce
 from html import escape
 from math import isfinite
 from pathlib import Path
@@ -17,9 +17,11 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
+from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.passivity.outcome_evidence import Found
 from zwidth.passivity.result import Answer, PassivityAnswer
-from zwidth.showing import Html
+from zwidth.showing import Html, Shown
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 HEAVY = PADDLE.replace(mass=0.04)
@@ -57,6 +59,28 @@ def answered(name: str) -> Answer:
 @cache
 def page(name: str) -> Html:
     return answered(name)._repr_html_()
+
+
+def _kinds(kind: type) -> Iterator[type]:
+    for one in kind.__subclasses__():
+        yield one
+        yield from _kinds(one)
+
+
+LOADED = "gains.check_gains gains.check_controllers links.check ports.scattering_passivity"
+"""Beside what is asked above: their classes are loaded with them."""
+
+
+def test_every_class_with_an_outcome_has_claim_and_margin() -> None:
+    """And shows itself in a notebook; of a bracket alone there is no margin, for it is the limit itself."""
+    for name in [*LOADED.split(), "workspace", "null_space", "maps.stiffness_over_postures"]:
+        assert reduce(getattr, name.split("."), zw)
+    named = {kind: {*dir(kind), *getattr(kind, "__dataclass_fields__", ())} for kind in _kinds(Shown)}
+    found = {kind: names for kind, names in named.items() if "outcome" in names and kind is not Found}
+    assert len(found) >= 15
+    for kind, names in found.items():
+        wanted = {"claim", "_repr_html_"} | ({"margin"} if kind is not Bracket else set())
+        assert wanted <= names, kind
 
 
 @pytest.mark.parametrize("name", ASKED)

@@ -25,6 +25,7 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import read_number
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,8 +69,8 @@ def prepare(
     operator: Operator,
     duration: RealLike,
     *,
-    initial_position: float | None = None,
-    initial_velocity: float = 0.0,
+    initial_position: RealLike | None = None,
+    initial_velocity: RealLike = 0.0,
     encoder_phase: float = 0.0,
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
@@ -122,7 +123,9 @@ class Laid(NamedTuple):
         clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
         return bool(free and memoryless and linear and clock and f.signals.position is None)
 
-    def starts(self, position: float | None, velocity: float, phase: float) -> tuple[float, float, float]:
+    def starts(
+        self, position: RealLike | None, velocity: RealLike, phase: float
+    ) -> tuple[float, float, float]:
         """The same, checked; without a position the one where it rests.
 
         Raises
@@ -135,8 +138,8 @@ class Laid(NamedTuple):
             raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {part:g}")
         if self.operator.kinematic:
             _refuse_start(position, velocity)
-        place = self.rest if position is None else position
-        return _number(place, "initial_position"), _number(velocity, "initial_velocity"), part
+        place = self.rest if position is None else read_number(position, "position", "initial_position")
+        return float(place), float(read_number(velocity, "velocity", "initial_velocity")), part
 
 
 def laid_out(
@@ -347,10 +350,8 @@ def resting_lines(setup: Setup) -> Array:
 
 
 def whole_samples(duration: RealLike, period: Fraction) -> int:
-    length = _number(duration, "duration")
-    if length <= 0:
-        raise InputError(f"duration must be > 0 s, got {length:g}")
-    samples = Exact(duration).fraction / period
+    length: Exact = read_number(duration, "sample_period", "duration", bound="> 0", why="no time, no motion")
+    samples = length.fraction / period
     whole = samples.numerator // samples.denominator
     if whole < 1:
         raise InputError(f"duration must be one sample period {float(period):g} s at least, got {length:g} s")
@@ -443,7 +444,7 @@ def check_signals(signals: Signals, samples: int) -> None:
             raise InputError(f"the operator's {name} at sample {bad[0]} is {values[bad[0]]}, not a number")
 
 
-def _refuse_start(position: float | None, velocity: float) -> None:
+def _refuse_start(position: RealLike | None, velocity: RealLike) -> None:
     if position is not None or velocity != 0.0:
         raise InputError(
             "a prescribed motion says itself where it starts: leave initial_position and initial_velocity out"

@@ -27,6 +27,7 @@ from zwidth.model.operator.operator import Operator
 from zwidth.model.rendering.bounding import ForceBounding
 from zwidth.model.rendering.rendered import Rendered
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -76,24 +77,25 @@ class SimulatedDevice:
         operator: Operator,
         duration: RealLike,
         *,
-        initial_position: float | None = None,
-        initial_velocity: float = 0.0,
+        initial_position: RealLike | None = None,
+        initial_velocity: RealLike = 0.0,
         encoder_phase: float = 0.0,
         amplifier: Amplifier | None = None,
         timing: Timing | None = None,
         points_per_sample: int = 1,
         bounding: ForceBounding | None = None,
-        stored_at_start: float | None = None,
+        stored_at_start: RealLike | None = None,
     ) -> None:
         if bounding is not None and not isinstance(bounding, ForceBounding):
             raise InputError(
                 f"bounding is a zwidth.rendering.ForceBounding or None, got {type(bounding).__name__}: other "
                 "laws look at the environment, and are yours to compute"
             )
-        self._stored = None if stored_at_start is None else _number(stored_at_start, "stored_at_start", "J")
-        if self._stored is not None and self._stored < 0:
-            raise InputError(
-                f"stored_at_start must be ≥ 0 J, got {self._stored:g}: it is the most that is held"
+        self._stored = None
+        if stored_at_start is not None:
+            why = "it is the most that is held"
+            self._stored = float(
+                read_number(stored_at_start, "energy", "stored_at_start", bound="≥ 0", why=why)
             )
         law = _GivenForce()
         self._setup = prepare(

@@ -11,11 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import Parametric, Reads, part, read_number
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,8 +25,12 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
+def _seconds(given: Any, name: str) -> Any:
+    return float(read_number(given, "sample_period", name)) if isinstance(given, str) else given
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Timing:
+class Timing(Parametric):
     """Lateness and missed samples, drawn at random or as recorded.
 
     Parameters
@@ -39,7 +45,9 @@ class Timing:
         Of the random draws.
     """
 
-    lateness: float | Sequence[float] = 0.0
+    lateness: Reads[float | Sequence[float], RealLike | Sequence[float]] = part(
+        "seconds", _seconds, 0.0, meaning="largest lateness, or that of every sample"
+    )
     missed: float | Sequence[bool] = 0.0
     seed: int = 0
 

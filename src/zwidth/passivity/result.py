@@ -23,6 +23,13 @@ def evidence_of(result: object) -> dict[str, Any]:
     return {getattr(part, "_KEY", name): part.saved() for name, part in found.items() if part is not None}
 
 
+def least(margins: Iterable[float | None]) -> float | None:
+    """The margin of several answers that all must hold; None where one is not known."""
+    found = [*margins]
+    known = [margin for margin in found if margin is not None]
+    return min(known) if known and len(known) == len(found) else None
+
+
 class Result(Documented):
     """Something found.  It describes itself once: a terminal, a notebook and a file are made of that."""
 
@@ -107,7 +114,10 @@ class Answer(Result):
 
     @property
     def margin(self) -> float | None:
-        """How far the answer is from another one, > 0 on the side of yes; None where no number says it."""
+        """How far the answer is from another one, > 0 on the side of yes; None where no number says it.
+
+        Of what it is, and its unit, each class says: what there is less what is needed.
+        """
         return None
 
     def __bool__(self) -> bool:

@@ -284,7 +284,7 @@ def one_of(name: str, value: T, *words: T) -> T:
 
 def read_number(
     value: Any,
-    quantity: Quantity,
+    quantity: Quantity | str,
     name: str,
     *,
     uncertain: bool = False,
@@ -294,9 +294,10 @@ def read_number(
 ) -> Any:
     """A number in SI, exact, from a number or a text with a unit; where it may be uncertain also an interval.
 
-    `name` is that of the argument, for the messages; a text has the unit of the motion, "linear" or "rotary",
-    or of either where nobody knows: "".
+    `quantity` may be its name in the glossary; `name` is that of the argument, for the messages; a text has
+    the unit of the motion, "linear" or "rotary", or of either where nobody knows: "".
     """
+    quantity = _quantity(quantity)
     number = _read(value, quantity, name, parse if uncertain else parse_number, motion)
     low, high = (number.low, number.high) if isinstance(number, Interval) else (number, number)
     if bound and not _BOUNDS[bound](low, high):

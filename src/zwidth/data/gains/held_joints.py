@@ -14,7 +14,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import PulseTransferFunction
 from zwidth.passivity.check import check
-from zwidth.passivity.result import evidence_of
+from zwidth.passivity.result import evidence_of, least
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answered, answers
@@ -80,6 +80,11 @@ class HeldJoints(Documented):
             return "No motion of a hand that moves one joint takes energy out, with these gains."
         what = {"active": "Energy comes out of", "undecided": "It is not known whether energy comes out of"}
         return f"{what.get(self.outcome, 'Proved less than passive are')} {', '.join(names)}."
+
+    @property
+    def margin(self) -> float | None:
+        """Of the damping of a joint the part that could go, the least of all; as of `Verdict.margin`."""
+        return least(joint.verdict.margin for joint in self.joints)
 
     def saved(self) -> dict[str, Any]:
         """The same with the proof, or the motion, of each joint."""

@@ -27,6 +27,7 @@ from zwidth.model.arms.wall import MatrixWall
 from zwidth.passivity.workspace import PostureMap, stiffness_over_postures
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
+from zwidth.showing import Shown
 from zwidth.writing import writing_whole
 
 _AXES = ("x", "y", "z")
@@ -35,8 +36,8 @@ _LESS = 0.98
 """What a try that misses is lowered to."""
 
 
-@dataclass(frozen=True)
-class BorneImpedance:
+@dataclass(frozen=True, repr=False)
+class BorneImpedance(Shown):
     """An impedance that all postures bear that were tried, as a parameter file of ros2_control.
 
     Attributes
@@ -56,6 +57,10 @@ class BorneImpedance:
     factors: tuple[Fraction, ...]
     found: PostureMap
     share: Fraction
+
+    def report(self) -> Iterator[str]:
+        """What was found, and what that assumes."""
+        return self._head()
 
     def to_yaml(self) -> str:
         """As text: below the names of the file, units and what was found in comments."""

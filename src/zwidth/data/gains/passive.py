@@ -30,6 +30,7 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
+from zwidth.showing import Shown
 from zwidth.writing import writing_whole
 
 SHARE = "0.8"
@@ -42,8 +43,8 @@ _TRIES = 6
 _HALVINGS = 24
 
 
-@dataclass(frozen=True)
-class PassiveGains:
+@dataclass(frozen=True, repr=False)
+class PassiveGains(Shown):
     """Gains of one arm's joints that are proved, as a parameter file of ros2_control.
 
     Attributes
@@ -73,6 +74,10 @@ class PassiveGains:
     def changed(self) -> tuple[tuple[JointLaw, JointLaw], ...]:
         """(law of the file, law that is proved) of each joint."""
         return tuple(zip(self.asked.joints, (joint.law for joint in self.joints), strict=True))
+
+    def report(self) -> Iterator[str]:
+        """What is promised, and what that assumes."""
+        return self._head()
 
     def to_yaml(self) -> str:
         """As text: below the names of the file, units and what was proved in comments."""

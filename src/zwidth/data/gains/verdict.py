@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -16,12 +16,13 @@ from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.passivity.pairs.limits import samples_around
+from zwidth.passivity.result import least
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
-from zwidth.showing import Headline, Lines, Part, Table
+from zwidth.showing import Headline, Lines, Part, Shown, Table
 
 MOST_SAMPLES = 100
 """Samples that readings may be old around both arms; beyond, a search takes seconds for a joint."""
@@ -59,8 +60,8 @@ def check_gains(
     return GainsVerdict(gains, joints, setting.notes)
 
 
-@dataclass(frozen=True)
-class JointVerdict:
+@dataclass(frozen=True, repr=False)
+class JointVerdict(Shown):
     """The verdict on one joint, and the gains that would be passive.
 
     Attributes
@@ -93,6 +94,15 @@ class JointVerdict:
     def claim(self) -> str:
         """In a sentence."""
         return f"{self.verdict.found}."
+
+    @property
+    def margin(self) -> float | None:
+        """As of the pair: how much stiffer the coupling may be [N·m/rad], < 0 where it must be softer."""
+        return self.verdict.margin
+
+    def report(self) -> Iterable[Part]:
+        """As of the pair."""
+        return self.verdict.report()
 
     @property
     @answers()
@@ -196,6 +206,11 @@ class GainsVerdict(Documented):
         ]
         told = ", ".join(f"{count} {outcome}" for count, outcome in counts if count)
         return f"Of {len(self.joints)} joints, each by itself: {told}."
+
+    @property
+    def margin(self) -> float | None:
+        """The least of the joints [N·m/rad]; None where one is not known."""
+        return least(joint.margin for joint in self.joints)
 
     @property
     @answers()

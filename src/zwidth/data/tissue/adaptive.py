@@ -24,11 +24,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from zwidth.data.tissue.first_order import Solid
-from zwidth.data.tissue.recursive import RecursiveSolid
+from zwidth.data.tissue.recursive import RecursiveSolid, solid_given
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.passivity.formulas.hypotheses import nonnegative
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -90,13 +92,13 @@ class AdaptiveSolid:
             raise InputError("an adaptive solid is paid for with the device's damping, and this one has none")
         if device.exact("delay") != 0:
             raise InputError("an adaptive solid is proved without delay; the device has one")
-        most = inf if largest_energy is None else float(Exact(largest_energy))
-        if most < 0:
-            raise InputError(f"largest_energy must be ≥ 0, got {most:g}: a debt is never allowed")
+        most = inf
+        if largest_energy is not None:
+            most = float(nonnegative("largest_energy", largest_energy, "a debt is never allowed", "energy"))
         self._numbers = np.array([damping / period, period, most])
         self._memory = np.zeros(_MEMORY)
         self._tracker = None if tracking is None else tracking.start()
-        self._target = _target(Solid(*(float(Exact(v)) for v in initial)), damping, period)
+        self._target = _target(solid_given(initial, ""), damping, period)
         self._memory[_MU0 : _MU0 + 4] = self._target
 
     def retune(self, solid: Solid | tuple[float, float, float]) -> Solid:
@@ -189,7 +191,7 @@ class AdaptiveSolid:
         return required_damping(self.solid, float(self._numbers[1]))
 
 
-def required_damping(solid: Solid, period: float) -> float:
+def required_damping(solid: Solid, period: RealLike) -> float:
     """b_req = μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T), backward Euler [N·s/m; N·m·s/rad].
 
     Parameters
@@ -199,9 +201,9 @@ def required_damping(solid: Solid, period: float) -> float:
     period
         T [s].
     """
-    mu0, mu1, eta = solid
-    branch = 1.0 / (2.0 / (mu1 * period) + 1.0 / eta) if mu1 > _LEAST and eta > _LEAST else 0.0
-    return mu0 * period / 2 + branch
+    (mu0, mu1, eta), t = solid, float(read_number(period, "sample_period", "period"))
+    branch = 1.0 / (2.0 / (mu1 * t) + 1.0 / eta) if mu1 > _LEAST and eta > _LEAST else 0.0
+    return mu0 * t / 2 + branch
 
 
 def _target(wanted: Solid, damping: float, period: float) -> tuple[float, float, float, float]:

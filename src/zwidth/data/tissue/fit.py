@@ -25,6 +25,8 @@ from zwidth.data.tissue.result import TissueFit
 from zwidth.data.tissue.search import fitted
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import samples
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
@@ -42,7 +44,7 @@ def fit_tissue(
     model: str = "standard-linear-solid",
     branches: int | None = None,
     response: Response = "force",
-    rest: float | None = None,
+    rest: RealLike | None = None,
     offset: bool = False,
     noise: Literal["correlated", "white"] = "correlated",
     motion: Literal["linear", "rotary"] = "linear",
@@ -138,7 +140,7 @@ def compare_tissues(
     return TissueComparison(tuple(sorted(fits, key=lambda fit: fit.bic)))
 
 
-def _record(time: Any, position: Any, force: Any, response: object, rest: float | None) -> Record:
+def _record(time: Any, position: Any, force: Any, response: object, rest: RealLike | None) -> Record:
     if response not in ("force", "position"):
         raise InputError(f'response is "force" or "position", got {response!r}')
     if hasattr(time, "data_vars"):
@@ -147,7 +149,9 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: float 
         raise InputError("give time, position and force; or a Dataset that holds them")
     t, x = samples(time, position, "position")
     _, f = samples(time, force, "force")
-    if not np.ptp(x) and not (rest is not None and x[0] != rest) and response == "force":
+    other = "position" if response == "force" else "force"
+    rested = None if rest is None else float(read_number(rest, other, "rest"))
+    if not np.ptp(x) and not (rested is not None and x[0] != rested) and response == "force":
         raise InputError(
             "the position never changes, so it says nothing: give a record of motion, or for a relaxation "
             "test the position before its step as rest=0"
@@ -158,7 +162,7 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: float 
             f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the force "
             "changes: how the tissue crept meanwhile is not known; give the part before it or after it"
         )
-    return Record(t, x, f, response, None if rest is None else float(rest), begins)
+    return Record(t, x, f, response, rested, begins)
 
 
 def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:

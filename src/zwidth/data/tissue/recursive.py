@@ -26,6 +26,7 @@ from zwidth.data.tissue.findings import passed_over
 from zwidth.data.tissue.first_order import RULES, Rule, Solid, as_rule, coefficients
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
+from zwidth.passivity.formulas.hypotheses import nonnegative, number
 from zwidth.quantity.exact import Exact, RealLike
 
 if TYPE_CHECKING:
@@ -128,19 +129,17 @@ class RecursiveSolid:
         keep = positive("forgetting", forgetting)
         if keep > 1:
             raise InputError(f"forgetting is at most 1, got {keep:g}: with 1 nothing is forgotten")
-        zone = Exact(dead_zone)
-        if zone < 0:
-            raise InputError(f"dead_zone must be ≥ 0, got {zone:g}: it is a size of errors")
+        zone = Exact(nonnegative("dead_zone", dead_zone, "it is a size of errors", "force"))
         values = {
             "sample_period": period,
-            "initial": _solid(initial),
+            "initial": solid_given(initial),
             "method": method,
             "rule": as_rule(rule),
             "forgetting": keep,
-            "noise": positive("noise", noise),
+            "noise": positive("noise", noise, "force"),
             "dead_zone": zone,
             "largest_trace": positive("largest_trace", largest_trace),
-            "stiffest": None if stiffest is None else positive("stiffest", stiffest),
+            "stiffest": None if stiffest is None else positive("stiffest", stiffest, "stiffness"),
             "relaxation_times": _times(relaxation_times, period),
         }
         for name, value in values.items():
@@ -263,27 +262,26 @@ class Tracker:
         self._memory[recursion.TRACE] = 3.0 * start
 
 
-def positive(name: str, value: RealLike) -> Exact:
-    try:
-        number = Exact(value)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-    if number <= 0:
-        raise InputError(f"{name} must be > 0, got {number:g}")
-    return number
+_WHY = "nothing is learned without it"
 
 
-def _solid(initial: tuple[RealLike, RealLike, RealLike]) -> Solid:
+def positive(name: str, value: RealLike, quantity: str = "") -> Exact:
+    return Exact(number(name, value, "> 0", _WHY, quantity))
+
+
+def solid_given(initial: tuple[RealLike, RealLike, RealLike], bound: str = "> 0") -> Solid:
     if isinstance(initial, str) or not hasattr(initial, "__len__") or len(initial) != 3:
         raise InputError(f"initial is (μ0, μ1, η1), three numbers > 0; got {initial!r}")
     names = ("stiffness", "branch_stiffness", "branch_damping")
-    return Solid(*(float(positive(f"initial {n}", v)) for n, v in zip(names, initial, strict=True)))
+    return Solid(
+        *(float(number(f"initial {n}", v, bound, _WHY, n)) for n, v in zip(names, initial, strict=True))
+    )
 
 
 def _times(given: tuple[RealLike, RealLike] | None, period: Exact) -> tuple[Exact, Exact]:
     if given is None:
         return Exact(period.fraction / 10), Exact(period.fraction * int(_SLOWEST))
-    low, high = (positive("relaxation_times", value) for value in given)
+    low, high = (positive("relaxation_times", value, "delay") for value in given)
     if low >= high:
         raise InputError(f"relaxation_times are (shortest, longest), got {low:g} and {high:g} s")
     return low, high

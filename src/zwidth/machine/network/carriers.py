@@ -23,6 +23,8 @@ from typing import Any
 from zwidth import installing
 from zwidth.errors import InputError
 from zwidth.machine.network.channel import LARGEST, Channel
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 _FORMS = (
     "udp:LOCAL,REMOTE such as udp:127.0.0.1:7401,127.0.0.1:7402; memory:NAME; "
@@ -30,7 +32,7 @@ _FORMS = (
 )
 
 
-def open_channel(text: str, first: bool, *, wait: float = 0.0) -> Channel:
+def open_channel(text: str, first: bool, *, wait: RealLike = 0.0) -> Channel:
     """The channel that a text names; `first` at one side, not at the other.
 
     Shared memory that is not there yet is waited for, `wait` seconds at most.
@@ -46,7 +48,7 @@ def open_channel(text: str, first: bool, *, wait: float = 0.0) -> Channel:
         local, remote = parts if first else reversed(parts)
         return UDP(local, remote)
     if kind == "memory" and len(parts) == 1 and parts[0]:
-        return _memory(parts[0], first, time.monotonic() + wait)
+        return _memory(parts[0], first, time.monotonic() + float(read_number(wait, "delay", "wait")))
     if kind == "zenoh" and all(parts):
         ends = parts[1:]
         return Zenoh(parts[0], first, listen=ends if first else (), connect=() if first else ends)

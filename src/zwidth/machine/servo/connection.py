@@ -13,7 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import nan
 from types import TracebackType
 from typing import ClassVar, Literal, NamedTuple
 
@@ -26,7 +26,7 @@ from zwidth.model.specification.table import Table, located
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import plain, read_number
+from zwidth.quantity.parameter import Parametric, Reads, parameter, plain, read_number
 
 # What a compiled connection and the loop say to each other, the first numbers of its memory:
 # the descriptor; the force that the device is to give along its axis; the position that it read; time [s] and
@@ -184,7 +184,7 @@ def seconds_of(duration: RealLike) -> Exact:
 
 
 @dataclass(frozen=True)
-class Placement:
+class Placement(Parametric):
     """Where on the device's axis the wall is: ``x = sense (reading − origin)``.
 
     Parameters
@@ -195,14 +195,14 @@ class Placement:
         1 where the wall lies towards greater readings, −1 where towards smaller ones.
     """
 
-    origin: float = 0.0
+    origin: Reads[float, RealLike] = parameter("position", 0, kept=float)
     sense: int = 1
 
     def __post_init__(self) -> None:
-        if self.sense not in (1, -1) or not isfinite(self.origin):
+        super().__post_init__()
+        if self.sense not in (1, -1):
             raise InputError(
-                f"a wall lies towards greater readings, sense 1, or smaller ones, sense -1, from a finite "
-                f"origin on; got sense {self.sense} and origin {self.origin}"
+                f"a wall lies towards greater readings, sense 1, or smaller ones, sense -1; got {self.sense}"
             )
 
     @classmethod

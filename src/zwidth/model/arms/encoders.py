@@ -35,6 +35,8 @@ from zwidth.model.arms.described import SECOND_DERIVATIVE, DescribedArm
 from zwidth.model.arms.joints import sampled_jacobian_damping
 from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 Array = npt.NDArray[np.float64]
 Chain = PlanarChain | DescribedArm
@@ -261,12 +263,15 @@ def held_torque_damping(arm: Arm, period: float, delay_samples: int, largest: tu
     )
 
 
-def forces_of(arm: Arm, given: float | Sequence[float] | None, name: str) -> tuple[float, ...]:
+def forces_of(arm: Arm, given: RealLike | Sequence[RealLike] | None, name: str) -> tuple[float, ...]:
     """A force [N], in pose with a moment [N·m], as it was given for `name`; empty if it was not."""
     if given is None:
         return ()
+    listed = [given] if isinstance(given, str) else given
     try:
-        forces = np.atleast_1d(np.asarray(given, dtype=np.float64))
+        forces = np.atleast_1d(np.asarray(listed, dtype=object))
+        units = zip(forces, ("linear", "rotary"), strict=False)
+        forces = np.array([float(read_number(one, "force", name, motion=motion)) for one, motion in units])
     except (TypeError, ValueError):
         forces = np.empty(0)
     if forces.shape != (2 if arm.turns else 1,) or not ((forces >= 0) & (forces < np.inf)).all():

@@ -20,6 +20,8 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.errors import InputError
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 Array = npt.NDArray[np.float64]
 
@@ -159,7 +161,7 @@ def end_effector_inertia(jacobian: npt.ArrayLike, inertia: npt.ArrayLike) -> Arr
     return np.asarray(np.linalg.pinv(j @ np.linalg.solve(np.asarray(inertia), j.T), hermitian=True))
 
 
-def sampled_jacobian_damping(curvature: float, largest_force: float, sample_period: float) -> float:
+def sampled_jacobian_damping(curvature: float, largest_force: RealLike, sample_period: RealLike) -> float:
     """What a controller that holds the torques J(q_k)ᵀF, not the force, asks of every joint: h F T/2.
 
     Over a period the two differ in work by F·(p(q_{k+1}) − p(q_k) − J(q_k)Δq) ≤ ½ h F |Δq|², and
@@ -179,9 +181,13 @@ def sampled_jacobian_damping(curvature: float, largest_force: float, sample_peri
     float
         c, to be added to the need of every joint [N·m·s/rad].
     """
-    if min(curvature, largest_force) < 0 or sample_period <= 0:
-        raise InputError("curvature and largest_force must be ≥ 0, and sample_period > 0 s")
-    return curvature * largest_force * sample_period / 2
+    most = read_number(largest_force, "force", "largest_force", bound="≥ 0", why="it is a size")
+    period = read_number(
+        sample_period, "sample_period", "sample_period", bound="> 0", why="a step takes time"
+    )
+    if curvature < 0:
+        raise InputError(f"curvature must be ≥ 0, got {curvature:g}: it is a bound")
+    return curvature * float(most) * float(period) / 2
 
 
 def as_matrix(damping: npt.ArrayLike) -> Array:

@@ -29,6 +29,8 @@ from zwidth.model.arms.arm import Arm
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.velocity import BackwardDifference
 from zwidth.model.environment.wall import Wall
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 Array = npt.NDArray[np.float64]
 
@@ -61,8 +63,12 @@ class WallNeed:
         return tuple(self.stiffness_share + share for share in self.damping_shares)
 
 
+def _period(given: RealLike) -> float:
+    return float(read_number(given, "sample_period", "sample_period"))
+
+
 def wall_need(
-    wall: Wall | MatrixWall, sample_period: float, delay_samples: int = 0, size: int = 3
+    wall: Wall | MatrixWall, sample_period: RealLike, delay_samples: int = 0, size: int = 3
 ) -> WallNeed:
     """The damping at the hand that a wall asks for.
 
@@ -84,7 +90,7 @@ def wall_need(
         If the wall is none of these, or has another number of coordinates.
     """
     k, b = wall_matrices(wall, size)
-    share = (2 * delay_samples + 1) * sample_period / 2 * k
+    share = (2 * delay_samples + 1) * _period(sample_period) / 2 * k
     values, vectors = np.linalg.eigh(b)
     bound = (vectors * np.abs(values)) @ vectors.T
     if not b.any() or (delay_samples == 0 and (values[0] >= 0 or values[-1] <= 0)):
@@ -95,13 +101,13 @@ def wall_need(
 
 
 def damping_at(
-    theta: float, wall: Wall | MatrixWall, sample_period: float, delay_samples: int = 0, size: int = 3
+    theta: float, wall: Wall | MatrixWall, sample_period: RealLike, delay_samples: int = 0, size: int = 3
 ) -> Array:
     """R(θ): the damping that motions of one frequency ask for, θ = ωT in (0, π] [N·s/m]."""
     k, b = wall_matrices(wall, size)
     d = delay_samples
     kernel = np.sin((d + 0.5) * theta) / np.sin(theta / 2)
-    return np.asarray(sample_period / 2 * kernel * k - np.cos((d + 1) * theta) * b)
+    return np.asarray(_period(sample_period) / 2 * kernel * k - np.cos((d + 1) * theta) * b)
 
 
 def require_wall(wall: object) -> None:

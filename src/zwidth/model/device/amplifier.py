@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device
-from zwidth.quantity.exact import Exact, as_parameter, ends
-from zwidth.quantity.parameter import Certain, Given, Parametric, exact
+from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.parameter import Certain, Given, Parametric, exact, read_number
 from zwidth.quantity.text import shown
 
 
@@ -172,7 +172,11 @@ def actuator_checks(device: Device, stiffness: Given | None = None) -> tuple[Act
 
 def _force_resolution(device: Device, stiffness: Given | None) -> ActuatorCheck:
     name, unit = "force resolution", device.unit("force_resolution")
-    slope = Fraction(0) if stiffness is None else ends(as_parameter(stiffness))[0]
+    slope = Fraction(0)
+    if stiffness is not None:
+        slope = ends(read_number(stiffness, "stiffness", "stiffness", uncertain=True, motion=device.motion))[
+            0
+        ]
     count = slope * ends(device.resolution)[0]
     missing = [] if slope > 0 else ["a stiffness"]
     if count == 0 and slope > 0:

@@ -27,7 +27,8 @@ from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment, certain
 from zwidth.model.environment.viscoelastic import Branch, GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.model.environment.wall import Wall
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.exact import Exact, Interval, RealLike
+from zwidth.quantity.parameter import read_number
 
 if TYPE_CHECKING:
     import numpy as np
@@ -110,7 +111,7 @@ def relaxation(solid: Environment, time: ArrayLike) -> Array:
 
 
 def force_response(
-    solid: Environment | Elements, time: ArrayLike, position: ArrayLike, rest: float | None = None
+    solid: Environment | Elements, time: ArrayLike, position: ArrayLike, rest: RealLike | None = None
 ) -> Array:
     """The force of the material under a position that is linear between its samples [N; N·m].
 
@@ -141,7 +142,7 @@ def force_response(
     total = spring * x
     if dashpot:
         total[1:] += dashpot * moved / h
-    step = 0.0 if rest is None else x[0] - rest
+    step = 0.0 if rest is None else x[0] - float(read_number(rest, "position", "rest"))
     for mu, eta in branches:
         total += mu * decaying(h, moved, mu / eta, step)
     return total
@@ -209,7 +210,7 @@ def creep(solid: Environment, time: ArrayLike) -> Array:
 
 
 def position_response(
-    solid: Environment | Elements, time: ArrayLike, force: ArrayLike, rest: float | None = None
+    solid: Environment | Elements, time: ArrayLike, force: ArrayLike, rest: RealLike | None = None
 ) -> Array:
     """The position of the material under a force that is linear between its samples [m; rad].
 
@@ -237,11 +238,11 @@ def position_response(
 
     at_once, flow, modes = compliance(solid)
     t, f = samples(time, force, "force")
-    if flow and rest:
+    before = (0.0 if flow else float(f[0])) if rest is None else float(read_number(rest, "force", "rest"))
+    if flow and before:
         raise InputError(
-            f"a solid without a spring flows: it was not at rest under {rest:g} N for ever; give rest=0"
+            f"a solid without a spring flows: it was not at rest under {before:g} N for ever; give rest=0"
         )
-    before = (0.0 if flow else float(f[0])) if rest is None else float(rest)
     h, moved = np.diff(t), np.diff(f)
     settled = at_once + sum(a for _, a in modes)
     total = settled * f

@@ -59,7 +59,10 @@ class SlopeBounds:
     bounded_below: bool
 
     def __init__(self, least: RealLike, greatest: RealLike, *, bounded_below: bool | None = None) -> None:
-        low, high = number("least", least), number("greatest", greatest)
+        low, high = (
+            number(name, slope, quantity="stiffness")
+            for name, slope in (("least", least), ("greatest", greatest))
+        )
         if low > high:
             raise InputError(f"the least slope is no more than the greatest; got {least} and {greatest}")
         object.__setattr__(self, "least", Exact(low))
@@ -158,7 +161,7 @@ class PassivityExcess:
     output: Exact
 
     def __init__(self, input: RealLike = 0, output: RealLike = 0) -> None:
-        iota, omicron = number("input", input), number("output", output)
+        iota, omicron = number("input", input, quantity="damping"), number("output", output)
         if iota > 0 and 4 * iota * omicron > 1:
             raise InputError(
                 f"4 · input · output must be ≤ 1, got {float(4 * iota * omicron):.6g}: then no force f and "
@@ -182,7 +185,10 @@ class PassivityExcess:
 
         From (f − g v)(G v − f) ≥ 0.
         """
-        low, high = number("least", least), number("greatest", greatest)
+        low, high = (
+            number(name, gain, quantity="damping")
+            for name, gain in (("least", least), ("greatest", greatest))
+        )
         if low > high or low + high <= 0:
             raise InputError(
                 f"the gains of a damper are given in order, with a positive sum; got {least} and {greatest}. "

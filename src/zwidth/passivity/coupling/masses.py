@@ -300,7 +300,9 @@ def heavy_body_damping(
             f"{float(b):g} and {float(delta):g} samples; ask passive_masses"
         )
     kappa = nonnegative("stiffness", stiffness, NEGATIVE_SPRING) * t
-    lag = _lag(integrator) + 2 * nonnegative("exchange_delay", exchange_delay, "a message cannot come early")
+    lag = _lag(integrator) + 2 * nonnegative(
+        "exchange_delay", exchange_delay, "a message cannot come early", "delay"
+    )
     lead = Fraction(1, 2) + delta - lag
     tuned = lead**2 * kappa**2 / (4 * b)
     return Exact(max(lag * kappa + (min(tuned, lead * kappa / 2) if lead > 0 else tuned), Fraction(0)))

@@ -47,6 +47,10 @@ _ROUNDING = 1e-9
 """Relative difference that counts as equality."""
 
 
+def __dir__() -> list[str]:  # as a part of its package it may be loaded before it is asked for
+    return ["admittance_display", "impedance_display", "llewellyn_damping"]
+
+
 def impedance_display(
     device: Device,
     stiffness: RealLike,
@@ -144,10 +148,8 @@ def admittance_display(
     t, b, mass = (float(device.exact(key)) for key in ("sample_period", "damping", "mass"))
     k, d = _coupling(stiffness, damping)
     why = "the inner loop would push away from the velocity it is given"
-    p, i = (
-        float(nonnegative(name, gain, why))
-        for name, gain in (("velocity_gain", velocity_gain), ("position_gain", position_gain))
-    )
+    p = float(nonnegative("velocity_gain", velocity_gain, why, "damping"))
+    i = float(nonnegative("position_gain", position_gain, why, "stiffness"))
     hertz = sampled_frequencies(frequencies, t)
     z = np.exp(2j * np.pi * hertz * t)
     between, _ = _hold(device, "average", z, hertz)

@@ -131,7 +131,7 @@ def damped_wall_friction(
     """
     k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
     step = nonnegative("resolution", resolution, "0 means an ideal encoder")
-    span = positive("memory", memory, "an estimate of velocity spans some time")
+    span = positive("memory", memory, "an estimate of velocity spans some time", "delay")
     return Exact((k / 2 + abs(number("damping", damping)) / span) * step)
 
 
@@ -159,10 +159,7 @@ def quantized_wall(device: Device, stiffness: RealLike) -> QuantizedWall:
 
 def stiffness_of_wall(stiffness: RealLike) -> Fraction:
     """K > 0, exact."""
-    k = Exact(stiffness).fraction
-    if k <= 0:
-        raise InputError(f"stiffness must be > 0, got {stiffness}: without a spring there is no wall")
-    return k
+    return positive("stiffness", stiffness, "without a spring there is no wall")
 
 
 @dataclass(frozen=True)
@@ -206,7 +203,7 @@ def worst_case(device: Device, stiffness: RealLike, displacement: RealLike) -> E
         λ [m; rad]: ≥ 0 on release, < 0 on compression.
     """
     wall = quantized_wall(device, stiffness)
-    distance = Exact(displacement).fraction
+    distance = number("displacement", displacement, quantity="position")
     return Exact((wall.b / wall.t - wall.k / 2) * distance**2 + _line(wall, distance))
 
 
@@ -216,7 +213,9 @@ def linear_worst_case(device: Device, stiffness: RealLike, displacement: RealLik
     Their slopes decide: coming out by λ after going in by λ loses at least
     (2f_c − K Δ) λ.  Parameters as for `worst_case`.
     """
-    return Exact(_line(quantized_wall(device, stiffness), Exact(displacement).fraction))
+    return Exact(
+        _line(quantized_wall(device, stiffness), number("displacement", displacement, quantity="position"))
+    )
 
 
 def fast_press(device: Device, stiffness: RealLike, counts: int | None = None) -> Counterexample:

@@ -88,8 +88,8 @@ def asked_of(
     rate: RealLike,
     delay: RealLike,
     points: int,
-    torque_held_up_to: float | Sequence[float] | None,
-    largest_force: float | Sequence[float] | None,
+    torque_held_up_to: RealLike | Sequence[RealLike] | None,
+    largest_force: RealLike | Sequence[RealLike] | None,
 ) -> Question:
     """The question, once its numbers are within their bounds."""
     hertz = float(parse_number(rate, "Hz", "rate"))

@@ -47,8 +47,8 @@ def workspace(
     rate: RealLike,
     delay: RealLike = 0,
     points: int = 100,
-    torque_held_up_to: float | Sequence[float] | None = None,
-    largest_force: float | Sequence[float] | None = None,
+    torque_held_up_to: RealLike | Sequence[RealLike] | None = None,
+    largest_force: RealLike | Sequence[RealLike] | None = None,
 ) -> Workspace:
     """Map over the workspace whether an arm renders a wall passively.
 

@@ -18,14 +18,15 @@ from matplotlib.ticker import MaxNLocator
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device
-from zwidth.passivity.formulas.abbott_okamura import linear_worst_case
+from zwidth.passivity.formulas.abbott_okamura import linear_worst_case, stiffness_of_wall
 from zwidth.passivity.formulas.abbott_okamura import worst_case as worst_case_at
 from zwidth.passivity.formulas.diolaiti import plane_point
+from zwidth.passivity.formulas.hypotheses import positive
 from zwidth.passivity.outcome_evidence import Moves
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import RealLike
 from zwidth.show.plots.cables import draw_replayed
 from zwidth.show.plots.replay import WHOLE, Replay, replay
 from zwidth.show.plots.style import (
@@ -239,13 +240,16 @@ def worst_case(device: Device, stiffness: RealLike, span: RealLike | None = None
 
 def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealLike | None = None) -> None:
     """The same on given axes."""
-    region = plane_point(device, stiffness).region
-    reach = _span(device, Exact(stiffness).fraction) if span is None else Exact(span).fraction
-    if reach <= 0:
-        raise InputError(f"span must be > 0, got {span}: there is no motion to draw")
+    wall = stiffness_of_wall(stiffness)
+    region = plane_point(device, wall).region
+    reach = (
+        _span(device, wall)
+        if span is None
+        else positive("span", span, "there is no motion to draw", "position")
+    )
     steps = [reach * k / _POINTS for k in range(-_POINTS, _POINTS + 1)]
-    curve = [float(worst_case_at(device, stiffness, Exact(s))) for s in steps]
-    line = [float(linear_worst_case(device, stiffness, Exact(s))) for s in steps]
+    curve = [float(worst_case_at(device, wall, s)) for s in steps]
+    line = [float(linear_worst_case(device, wall, s)) for s in steps]
     energy, joules = scale([*curve, *line], "J")
     length, metres = scale([float(reach)], device.unit("position"))
     x = [length * float(s) for s in steps]
@@ -258,7 +262,7 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
         axes.text(place, 0.02, word, transform=axes.transAxes, ha="center", va="bottom", color=GREY)
     axes.set_xlabel(with_unit("way out in one sample λ", metres))
     axes.set_ylabel(with_unit("beyond an ideal spring, J*", joules))
-    k = quantity_text(float(Exact(stiffness)), "stiffness", device.motion)
+    k = quantity_text(float(wall), "stiffness", device.motion)
     axes.margins(y=0.12)
     legend(axes)
     heading(axes, f"{shown_name(device)}, K = {k}: {region}", parse_math=False)

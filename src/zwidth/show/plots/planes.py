@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
 from zwidth.model.device import Device, catalogue
+from zwidth.passivity.formulas.abbott_okamura import stiffness_of_wall
 from zwidth.passivity.formulas.diolaiti import plane_point
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.show.plots.style import (
@@ -78,7 +79,7 @@ def draw_plane(
             "the plane has logarithmic axes b/(K T) and f_c/(K Δ): it needs damping, coulomb_friction "
             "and resolution > 0 and a device without delay"
         )
-    given = largest_spring_of(device) if stiffness is None else Exact(stiffness)
+    given = largest_spring_of(device) if stiffness is None else stiffness_of_wall(stiffness)
     point, at_limit = plane_point(device, given), place_at_limit(device)
     k, beta, sigma = float(given), float(point.viscous), float(point.dry)
     others = _others(device) if with_catalogue else []

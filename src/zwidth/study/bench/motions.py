@@ -18,7 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from math import cos, floor, isfinite, pi
+from math import cos, floor, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import read_number
 
 USUAL = Fraction(1, 10)
 """Part of the fastest speed below which a hand is tried first: about what a hand reaches, of 10 m/s."""
@@ -73,12 +74,15 @@ def count_of(device: Device, fastest: RealLike) -> Fraction:
 def as_speed(device: Device, fastest: RealLike) -> Fraction:
     """The speed of the fastest hand [m/s]."""
     least = 2.5 * EDGE * float(device.exact("resolution") / device.exact("sample_period"))
-    if not (isfinite(float(fastest)) and float(fastest) > 0 and float(fastest) >= least):
+    speed: Exact = read_number(
+        fastest, "speed", "fastest", bound="> 0", why="a hand at rest takes nothing out"
+    )
+    if speed < least:
         raise InputError(
             f"fastest is the speed of a hand [m/s], finite and at least {least:.3g} to cross an edge of the "
             f"encoder and come back, got {fastest}: a hand reaches about 1 m/s"
         )
-    return Exact(fastest).fraction
+    return speed.fraction
 
 
 def speed_of(positions: Floats, period: float) -> float:

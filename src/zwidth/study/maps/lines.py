@@ -32,7 +32,8 @@ from zwidth.passivity.stability.characteristic import (
 )
 from zwidth.passivity.stability.known_hand import largest_stable, motion_of, plain_of
 from zwidth.quantity.balls import precision
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import read_number
 
 _SLOWEST = 1e-4
 """Smallest angle ωT on the curve, as a part of π."""
@@ -158,7 +159,7 @@ def robust_boundary(
     InputError
         As `stability`, or if the range or the number of points cannot be.
     """
-    low, high = (Exact(end) for end in virtual_damping)
+    low, high = (read_number(end, "virtual_damping", "virtual_damping") for end in virtual_damping)
     if low >= high or points < 2:
         raise InputError(
             "virtual_damping runs from its smaller to its larger end, over ≥ 2 points; "

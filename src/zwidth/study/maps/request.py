@@ -26,6 +26,7 @@ from zwidth.passivity.scope import Hands, Scope, scope_of
 from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.passivity.transmission import as_one_body, elastic_of, is_ideal
 from zwidth.quantity.exact import Exact, Interval, RealLike, ends
+from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import in_words
 from zwidth.study.chunks.layout import Layout
 
@@ -161,8 +162,8 @@ def request(
             )
     velocity = BackwardDifference() if velocity_filter is None else velocity_filter
     Wall(1, 1, velocity_filter=velocity)  # says what is wrong with it
-    k = _read_axis("stiffness", stiffness, cells[0])
-    b = _read_axis("virtual_damping", virtual_damping, cells[1])
+    k = _read_axis("stiffness", stiffness, cells[0], device.motion)
+    b = _read_axis("virtual_damping", virtual_damping, cells[1], device.motion)
     if k.low.fraction < 0:
         raise InputError(f"stiffness must be ≥ 0, got {k.low:g}: a negative spring pulls the hand in")
     if k.cells * b.cells > MOST_CELLS:
@@ -172,8 +173,8 @@ def request(
     return Request(as_one_body(device), device, k, b, velocity, known)
 
 
-def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
-    low, high = (Exact(end) for end in both)
+def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int, motion: str) -> Axis:
+    low, high = (read_number(end, name, name, motion=motion) for end in both)
     if low >= high:
         raise InputError(
             f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends"

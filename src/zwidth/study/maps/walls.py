@@ -28,6 +28,7 @@ from zwidth.model.environment import BackwardDifference, OnePole
 from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import to_json
 from zwidth.quantity.units import parse_number
 from zwidth.study.chunks.layout import Finished, Layers, Place, on_cluster, on_threads
@@ -51,7 +52,7 @@ def z_width(
     *,
     velocity_filter: VelocityEstimator | None = None,
     hands: Mapping[str, Any] | None = None,
-    speed: float = SPEED,
+    speed: RealLike = SPEED,
     path: str | PathLike[str] | None = None,
     address: str | None = None,
     workers: int | None = None,
@@ -108,8 +109,9 @@ def z_width(
     asked = request(device, stiffness, virtual_damping, cells, velocity_filter, hands)
     if workers is not None and workers < 1:
         raise InputError(f"workers must be ≥ 1, got {workers}: someone has to compute")
-    if not speed > 0:
-        raise InputError(f"speed must be > 0, got {speed}: a hand at rest gains nothing from any wall")
+    quiet = float(
+        read_number(speed, "speed", "speed", bound="> 0", why="a hand at rest gains nothing from any wall")
+    )
     ready = plan(asked)
 
     def finished(left: list[Place]) -> Finished:
@@ -120,7 +122,7 @@ def z_width(
     store = None if path is None else Path(path)
     with nullcontext() if store is None else alone(store):
         layers = computed(asked.layout, finished, store, progress)
-    return _dataset(asked, ready, layers, speed)
+    return _dataset(asked, ready, layers, quiet)
 
 
 def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Dataset:
@@ -216,7 +218,7 @@ def z_width_factors(
     filters: tuple[VelocityEstimator, VelocityEstimator] = _FILTERS,
     cells: tuple[int, int] = (100, 100),
     hands: Mapping[str, Any] | None = None,
-    speed: float = SPEED,
+    speed: RealLike = SPEED,
 ) -> xr.Dataset:
     """Areas of the Z-width for all sixteen combinations of two levels of four factors, and their effects.
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, inf, pi
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
@@ -28,8 +28,10 @@ from zwidth.data.identification.device.two_masses import MOST
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device, in_one
 from zwidth.native.compiled import Array
-from zwidth.quantity.exact import ends
+from zwidth.quantity.exact import RealLike, ends
+from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import shown, told_quantity
+from zwidth.showing import Shown
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -45,7 +47,7 @@ LEAST_SHARE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class MeasurementPlan:
+class MeasurementPlan(Shown):
     """How to move a device so that its limit becomes known.
 
     Parameters
@@ -123,9 +125,9 @@ class MeasurementPlan:
         seen = self.speed is None or found.speed >= self.speed
         return seen and found.strokes >= FEWEST_STROKES and high - low <= 2 * self.precision * value
 
-    def __repr__(self) -> str:
+    def report(self) -> Iterator[str]:
         """The protocol for a person."""
-        return "\n".join(_protocol(self))
+        return _protocol(self)
 
 
 def _protocol(plan: MeasurementPlan) -> Iterator[str]:
@@ -204,13 +206,13 @@ def _spoken(stroke: Stroke, share: float, rotary: bool) -> str:
 def plan_identification(
     guess: Device | Identified,
     *,
-    force_noise: float | None = None,
-    length: float = 0.06,
-    slow: float = 1.0,
-    fast: float = 0.25,
+    force_noise: RealLike | None = None,
+    length: RealLike = 0.06,
+    slow: RealLike = 1.0,
+    fast: RealLike = 0.25,
     precision: float = 0.05,
     confidence: float = 0.95,
-    speed: float | None = None,
+    speed: RealLike | None = None,
 ) -> MeasurementPlan:
     """Plan the motion that tells how stiff a wall may be, ``K ≤ min(2b/T, 2f_c/Δ)``.
 
@@ -245,12 +247,9 @@ def plan_identification(
         if not isinstance(guess, Identified):
             raise InputError("force_noise is needed with a guessed device: σ of the load cell per sample [N]")
         force_noise = guess.force_noise
-    given: dict[str, Any] = {"force_noise": force_noise, "length": length, "slow": slow, "fast": fast}
-    if speed is not None:
-        given["speed"] = speed
-    for name, value in given.items():
-        if not 0 < value < inf:
-            raise InputError(f"{name} must be > 0 and finite, got {value!r}: no plan can be made without it")
+    noise, length = _positive("force_noise", force_noise, "force"), _positive("length", length, "position")
+    slow, fast = _positive("slow", slow, "sample_period"), _positive("fast", fast, "sample_period")
+    speed = None if speed is None else _positive("speed", speed, "speed")
     for name, value in {"precision": precision, "confidence": confidence}.items():
         if not 0 < value < 1:
             raise InputError(f"{name} must be between 0 and 1, got {value!r}; 0.05 and 0.95 are usual")
@@ -268,12 +267,16 @@ def plan_identification(
         guess=device,
         strokes=strokes,
         shares=tuple(shares.tolist()),
-        force_noise=force_noise,
+        force_noise=noise,
         precision=precision,
         confidence=confidence,
         speed=speed,
         apart=None if whole.transmission is None else whole,
     )
+
+
+def _positive(name: str, value: RealLike, quantity: str) -> float:
+    return float(read_number(value, quantity, name, bound="> 0", why="no plan can be made without it"))
 
 
 def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:

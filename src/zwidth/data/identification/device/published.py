@@ -16,6 +16,7 @@ here to be compared with `identify`, which has no such number to choose.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -25,13 +26,14 @@ from zwidth.data.logs import Block, Log
 from zwidth.data.logs.table import whole_runs
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
+from zwidth.showing import Shown
 
 PASSES = 20
 """Of the moving average where nothing else is said; the paper gives no number."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class PublishedFit:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class PublishedFit(Shown):
     """What smoothing and least squares make of a log; without intervals, for the method has none.
 
     Parameters
@@ -56,6 +58,10 @@ class PublishedFit:
     explained: float
     passes: int
     samples: int
+
+    def report(self) -> Iterator[str]:
+        """The numbers in SI, on one line."""
+        yield ", ".join(f"{name} {value:.6g}" for name, value in vars(self).items() if value is not None)
 
 
 def identify_published(

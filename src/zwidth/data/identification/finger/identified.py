@@ -7,7 +7,7 @@ Gillespie & Cutkosky 1996, as told by others), a whole arm some thousands at the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -20,6 +20,8 @@ from zwidth.data.identification.finger.means import Pieces
 from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
 from zwidth.model.operator.fingers import Finger
+from zwidth.quantity.text import in_words
+from zwidth.showing import Part, Shown, Table
 
 BY_ACTUATOR = "stiffness by the actuator"
 
@@ -149,8 +151,8 @@ def apart(hand: Estimate, actuator: Estimate) -> tuple[float, Finding] | None:
     return abs(hand.value - actuator.value), finding
 
 
-@dataclass(frozen=True, kw_only=True)
-class IdentifiedFinger:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class IdentifiedFinger(Shown):
     """A finger as it held, for some tens of milliseconds at a time.
 
     Parameters
@@ -182,6 +184,12 @@ class IdentifiedFinger:
     motion: Literal["linear", "rotary"]
     source: str
     findings: tuple[Finding, ...]
+
+    def report(self) -> Iterator[Part]:
+        """The numbers, and what a person should know."""
+        yield f"A finger, of {self.pulses} pulses in {self.pieces} pieces of {self.source}:"
+        yield Table(rows=[(in_words(name), str(estimate)) for name, estimate in self.estimates.items()])
+        yield from map(str, self.findings)
 
     def finger(self, **others: Any) -> Finger:
         """A finger to simulate with, `zwidth.operators.Finger`, of the best guesses.

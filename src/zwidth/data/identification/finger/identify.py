@@ -57,7 +57,8 @@ from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device, require_rigid
 from zwidth.native.compiled import Array
-from zwidth.quantity.exact import ends
+from zwidth.quantity.exact import RealLike, ends
+from zwidth.quantity.parameter import read_number
 
 ROUNDS = 4
 """Of the model that makes the instrument."""
@@ -77,8 +78,8 @@ def identify_finger(
     log: Log,
     device: Device | None = None,
     *,
-    piece: float = 0.25,
-    delay: float = 0.0,
+    piece: RealLike = 0.25,
+    delay: RealLike = 0.0,
     instrument: Instrument | None = None,
 ) -> IdentifiedFinger:
     """Identify the finger: ``m_h ẍ + c ẋ + k (x − x_a(t)) = −f_h``, x_a slow.
@@ -107,8 +108,10 @@ def identify_finger(
         If the log shows too little, or a number is outside its bound; or if it is of no finger: a force that
         is late, at the end of its range, or of another sign or unit than was said.
     """
-    instrument = _checked(log, device, piece, delay, instrument)
-    task = _Task(log, device, piece, delay, instrument, "hand_force" in log.channels)
+    length = float(read_number(piece, "sample_period", "piece"))
+    late = float(read_number(delay, "delay", "delay"))
+    instrument = _checked(log, device, length, late, instrument)
+    task = _Task(log, device, length, late, instrument, "hand_force" in log.channels)
     try:
         return _identified(task)
     except LoadCellError as error:
