@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -18,8 +18,10 @@ from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
 from zwidth.quantity.answered import known
+from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import enough, in_unit, in_words
+from zwidth.quantity.parameter import Parametric, parameters_of
+from zwidth.quantity.text import enough, in_unit, in_words, shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
@@ -100,10 +102,14 @@ class Found(PassivityAnswer):
 def claim(verdict: Found) -> str:
     """The verdict in a sentence or two."""
     if verdict.outcome == "active":
+        where = (
+            f", at every value of its intervals; at {where_active(verdict)}" if active_at(verdict) else ":"
+        )
         if verdict.violation is not None:
-            return f"The hand can take any amount of energy out of this loop: {verdict.violation.describe()}."
+            gains = verdict.violation.describe()
+            return f"The hand can take any amount of energy out of this loop{where} {gains}."
         assert verdict.witness is not None
-        return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+        return f"A motion of the hand takes energy out of this loop{where} {verdict.witness.describe()}."
     if verdict.outcome == "theorem":
         return f"By a proof on paper, without a certificate: {verdict.theorem}."
     if verdict.outcome == "undecided":
@@ -124,6 +130,35 @@ def assumptions(verdict: Found) -> tuple[str, ...]:
     """What the claim covers and takes for granted, line by line."""
     between = intervals(verdict.scope, verdict.outcome)
     return (*lines(verdict.scope, verdict.outcome), *([] if between is None else [between]))
+
+
+def active_at(verdict: Found) -> dict[str, float]:
+    """Of the parameters that are intervals the values at which energy was shown to come out, in SI."""
+    if verdict.violation is None and verdict.motion is None:
+        return {}
+    own = {name: getattr(verdict.device, name, None) for name, *_ in verdict.scope.bounds}
+    box = getattr(verdict, "box", None)  # of laws with H(z)
+    law = {} if box is None else dict(_chosen(box[1], verdict.environment))
+    return {name: float(value) for name, value in {**own, **law}.items() if isinstance(value, Exact)}
+
+
+def where_active(verdict: Found) -> str:
+    """The same in words."""
+    motion = verdict.scope.motion
+    return ", ".join(
+        f"{in_words(name)} {shown(value, GLOSSARY[name].unit_for(motion))}"
+        for name, value in active_at(verdict).items()
+    )
+
+
+def _chosen(given: Any, at: Any) -> Iterator[tuple[str, Any]]:
+    """By the names of the glossary, what stands in the place of intervals at any depth."""
+    for name, one in parameters_of(type(given)).items():
+        value = getattr(given, name)
+        if isinstance(value, Interval):
+            yield one.quantity.name, getattr(at, name)
+        elif isinstance(value, Parametric):
+            yield from _chosen(value, getattr(at, name))
 
 
 _ROADS = {
@@ -173,9 +208,11 @@ def _undecided(verdict: Found) -> str:
             "for intervals of these parameters together."
         )
     if verdict.finding == "depends on values":
+        found = verdict.violation or verdict.motion
+        assert found is not None
         return (
-            "The answer depends on where in its intervals the loop lies: energy can be taken out at the "
-            "worst corner, and for other values that is not known."
+            f"Active for some values of its intervals: at {where_active(verdict)} {found.describe()}. Of "
+            "other values in them that is not known."
         )
     if verdict.finding == "no lowest energy":
         return (

@@ -34,6 +34,7 @@ from zwidth.cli.page import (
     small_print,
 )
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome_evidence import where_active
 from zwidth.passivity.scope import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import in_short, intervals
@@ -146,13 +147,20 @@ def _headline(verdict: Verdict) -> Padding:
 
 
 def _claim(verdict: Verdict) -> str:
+    where = where_active(verdict)
+    if verdict.outcome == "undecided" and where and verdict.witness is not None:
+        return (
+            f"Active for some values of its intervals: at {where} the motion below takes "
+            f"{joules(verdict.witness)} out, each time it is made. Of other values in them that is not known."
+        )
     if verdict.outcome != "active":
         return verdict.claim
     if verdict.scope.transmission == "as given":  # no motion of two bodies is more than replayed
         return verdict.claim
     if verdict.witness is None:
         return f"{verdict.claim} No motion that shows it was found short enough to be written down."
-    return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
+    at = f", at {where}" if where else ""
+    return f"The motion below takes {joules(verdict.witness)} out of this loop{at}, each time it is made."
 
 
 def _loop(verdict: Verdict, over_ranges: bool) -> Iterator[Row]:
