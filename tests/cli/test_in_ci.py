@@ -9,6 +9,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 from zipfile import ZipFile
 
 import pytest
@@ -22,14 +23,14 @@ EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "github-actions"
 WORKFLOW = yaml.safe_load((EXAMPLE / "passivity.yml").read_text(encoding="utf-8"))
 
 
-def the_step(holds: str) -> str:
-    """The script of the step that has these words, as the runner gives it to bash."""
+def the_step(holds: str) -> dict[str, Any]:
+    """The step that has these words: its script, as the runner gives it to bash, and its environment."""
     (job,) = WORKFLOW["jobs"].values()
-    (script,) = (step["run"] for step in job["steps"] if holds in step.get("run", ""))
-    return str(script)
+    (step,) = (step for step in job["steps"] if holds in step.get("run", ""))
+    return dict(step)
 
 
-def run_in(folder: Path, step: str = "zwidth check") -> subprocess.CompletedProcess[str]:
+def run_in(folder: Path, holds: str = "zwidth check", **env: str) -> subprocess.CompletedProcess[str]:
     """`bash -e` in a checkout, with this zwidth and this python on the path."""
     tools = folder / "tools"
     tools.mkdir(exist_ok=True)
@@ -37,10 +38,11 @@ def run_in(folder: Path, step: str = "zwidth check") -> subprocess.CompletedProc
         tool = tools / name
         tool.write_text(f'#!/bin/sh\nexec "{sys.executable}" {words}"$@"\n', encoding="utf-8")
         tool.chmod(0o755)
-    path = {**os.environ, **WORKFLOW["env"], "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
-    path |= {"PIP_TARGET": str(folder / "installed"), "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1"}
-    command = ["bash", "-e", "-c", the_step(step)]
-    return subprocess.run(command, cwd=folder, env=path, capture_output=True, text=True, check=False)
+    step, path = the_step(holds), f"{tools}{os.pathsep}{os.environ['PATH']}"
+    given = {**os.environ, **WORKFLOW["env"], **step.get("env", {}), **env, "PATH": path}
+    given |= {"PIP_TARGET": str(folder / "installed"), "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1"}
+    command = ["bash", "-e", "-c", step["run"]]
+    return subprocess.run(command, cwd=folder, env=given, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the runner's shell is bash")
@@ -85,3 +87,28 @@ def test_a_gain_change_that_makes_a_wall_active_fails_the_build(tmp_path):
     assert ": lower the stiffness from " in said
     assert "::error file=walls/soft-lock.toml::it cannot be used" in bad.stdout
     assert json.loads((tmp_path / "verdicts" / "bump-stop.json").read_text())["outcome"] == "active"
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="the runner's shell is bash")
+def test_what_is_not_proved_fails_the_build_too(tmp_path):
+    """A delay within which some value is active is status 3; contact kept, 4, passes where it was chosen."""
+    (tmp_path / "walls").mkdir()
+    (tmp_path / "walls" / "wall.toml").write_text(
+        '[environment]\ntype = "wall"\nstiffness = "250 N/m"\n', encoding="utf-8"
+    )
+    device = '[device]\ndamping = "0.15 N*s/m"\ncoulomb_friction = "0.1 N"\nrate = "1 kHz"\n'
+    (tmp_path / "device.toml").write_text(f'{device}delay = "0 .. 0.25 ms"\n', encoding="utf-8")
+    some = run_in(tmp_path)
+    assert some.returncode == 1
+    said = "::error file=walls/wall.toml::undecided. Active for some values of its intervals: at delay 250 µs"
+    assert said in some.stdout
+    saved = json.loads((tmp_path / "verdicts" / "wall.json").read_text())
+    assert saved["active_at"] == {"delay_s": 0.00025}
+    damped = '[environment]\ntype = "wall"\nstiffness = 100\ndamping = 0.03\n'
+    (tmp_path / "walls" / "wall.toml").write_text(damped, encoding="utf-8")
+    (tmp_path / "device.toml").write_text(
+        '[device]\ndamping = 0.12\nrate = "1 kHz"\ndelay = "0.4 ms"\n', encoding="utf-8"
+    )
+    in_contact = run_in(tmp_path)
+    assert (in_contact.returncode, "::passive in contact. " in in_contact.stdout) == (1, True)
+    assert run_in(tmp_path, ACCEPTED="0 4").returncode == 0

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from strategies import decimals
+from strategies import decimals, seeds
 
 import zwidth as zw
 from zwidth.passivity import finite_stiffness as module
@@ -44,6 +46,43 @@ def test_the_simulated_port_gives_out_what_the_proof_counts(name: str) -> None:
     exact, simulated = _replayed(*LOOPS[name])
     assert exact > 0
     assert simulated == pytest.approx(exact, rel=1e-9)
+
+
+@seeds(30)
+def test_the_motion_of_intervals_is_of_the_corner_that_is_told(seed: int) -> None:
+    """Damping, delay, resolution or stiffness within ranges: whatever values are active, some or all, motion,
+    proof and numbers are of one loop, and its simulated port gives out what is claimed."""
+    rng = random.Random(seed)
+    several = {"damping": (0.1, 0.2), "delay": (0, 0.00025), "resolution": (0, 0.0003)}
+    chosen = {key: ends for key, ends in several.items() if rng.random() < 0.6}
+    stiffness = rng.choice([400, 900, (300, 1200)])
+    device = PADDLE.replace(**chosen, coulomb_friction=rng.choice([0, 0.05]))
+    verdict = zw.check(device, zw.Wall(stiffness, damping=rng.choice([0, 0.05])), iterate=False)
+    if verdict.witness is None:
+        return
+    at, proved = verdict.device, verdict.violation or verdict.witness
+    assert proved.setting == verdict.decision.setting == verdict.witness.setting
+    told = {key: float(getattr(at, key)) for key in chosen}
+    own = {"stiffness": float(verdict.environment.stiffness)} if isinstance(stiffness, tuple) else {}
+    assert (verdict.active_at or {}) == told | own
+    motion = verdict.witness.motion.repeated(min(30, verdict.witness.motion.rounds))
+    hand = zw.operators.WitnessMotion(motion)
+    duration = (hand.intervals + 1) * at.exact("sample_period")
+    trace = zw.simulate(at, verdict.environment, hand, duration, amplifier=zw.amplifiers.Ideal())
+    exact = float(verdict.witness.setting.energy(motion) or 0)
+    assert -float(trace.hand_work[-1]) == pytest.approx(exact, rel=1e-9)
+
+
+def test_the_replay_of_an_interval_gives_out_what_its_proof_counts() -> None:
+    """500 N/m, a delay within 0 … 0.25 ms: active at every value, the motion that of the worst."""
+    wide = zw.Device(
+        mass=0.02, damping=0.15, coulomb_friction=0.1, resolution=13.1e-6, rate=1000, delay=(0, 0.00025)
+    )
+    verdict = zw.check(wide, zw.Wall(500))
+    found = zw.replay(verdict)
+    assert (verdict.outcome, verdict.active_at) == ("active", {"delay": 0.00025})
+    assert found.replayed == pytest.approx(found.claimed, rel=1e-9)
+    assert found.claimed == pytest.approx(verdict.witness.energy)
 
 
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])

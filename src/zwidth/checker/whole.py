@@ -80,8 +80,10 @@ SHAPES: dict[str, Shape] = {
             *_LOOP, "decided_by", "mode", "max_stiffness", "max_gain", "critical_frequency",
             "admissible_speed", "margins", "actuator", "real_hand", "ranges",
             "max_stiffness_any_transmission", "max_stiffness_viscous", "resonance", "hand_motion",
+            "active_at",
         ),
         inside={
+            "best_corner": ("one", "zwidth verdict 1"),
             "worst_hand": ("one", "zwidth worst hand 1"),
             "active_hand": ("one", "zwidth activity 1"),
             "known_hands": ("named", "zwidth stability 1"),

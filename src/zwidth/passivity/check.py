@@ -222,13 +222,15 @@ def _decided(device: Device, law: Environment, asked: Contact) -> LinearVerdict:
             return found if touched is None else touched
         return _undecided(device, law, corners[0], decisions[0], "between corners")
     worst = _worst(failing, decisions)
-    certain = device.is_certain and len(corners) == 1
-    least = _refute(decisions[worst]) if certain else _refute_best(device, law)
-    if least is not None:
-        return _active(device, law, corners[worst], decisions[worst], least)
-    at_worst = None if certain else _refute(decisions[worst])
-    finding: Finding = "open" if at_worst is None else "depends on values"
-    found = _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
+    at, decision = corners[worst], decisions[worst]
+    shown, certain = _refute(decision), device.is_certain and len(corners) == 1
+    best = None if certain else _refute_best(device, law)
+    if best is not None:
+        return _active(device, law, *(best if shown is None else (at, decision, shown)), best[2])
+    if certain and shown is not None:
+        return _active(device, law, at, decision, shown)
+    finding: Finding = "open" if shown is None else "depends on values"
+    found = _undecided(device, law, at, decision, finding, shown)
     touched = None if asked == "kept" else _touched(device, law, found)
     return found if touched is None else touched
 
@@ -366,20 +368,29 @@ def _refute(decision: Decision) -> Evidence | None:
     return violation if violation.verify() else violation.witness
 
 
-def _refute_best(device: Device, law: Environment) -> Evidence | None:
+def _refute_best(device: Device, law: Environment) -> tuple[Loop, Decision, Evidence] | None:
     """What shows that the loop is active even at the best values within the intervals, or None."""
     best = best_corner(device, law)
     if best is None:
         return None
     decision = decide(*best)
-    return None if decision.is_provable else _refute(decision)
+    shown = None if decision.is_provable else _refute(decision)
+    return None if shown is None else (best, decision, shown)
 
 
 def _active(
-    device: Device, law: Environment, corner: Loop, decision: Decision, shown: Evidence
+    device: Device,
+    law: Environment,
+    corner: Loop,
+    decision: Decision,
+    shown: Evidence,
+    best: Evidence | None = None,
 ) -> LinearVerdict:
     scope = _scope(device, law, decision).replace(contact=shown.contact)
-    return LinearVerdict("active", scope, *corner, decision=decision, **_as_evidence(shown))
+    elsewhere = None if best is None or best.setting == shown.setting else best
+    return LinearVerdict(
+        "active", scope, *corner, decision=decision, best_corner=elsewhere, **_as_evidence(shown)
+    )
 
 
 def _undecided(

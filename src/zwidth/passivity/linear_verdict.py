@@ -19,6 +19,8 @@ from zwidth.passivity.formulas.diolaiti import admissible_speed
 from zwidth.passivity.loop_advice import Asked, advise
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import at_most, in_words, shown, shown_at_least
@@ -54,6 +56,11 @@ class LinearVerdict(Verdict):
             "motion that was found is short enough to be written down",
         ),
         (
+            "best_corner",
+            "of intervals of which every value is active: `outcome`, and the `violation` or `witness` at the "
+            "values that ask for least",
+        ),
+        (
             "hand_motion",
             "of a device with a transmission: `positions_m` at the ends of the `pieces` of each "
             "sample, and `energy_J`, found in the simulator; no evidence, the checker lists it as "
@@ -69,6 +76,10 @@ class LinearVerdict(Verdict):
     decision: Decision = known("what is known of the loop, at the worst corner where intervals were given")
     box: Loop | None = known("the loop with its intervals; None where it was not kept", default=None)
     asked: Contact = known("of which contact", default="made and broken")
+    best_corner: Violation | Witness | None = known(
+        "what shows that the best values of the intervals are active, and so all are; None for single values",
+        default=None,
+    )
 
     @cached_property
     def budget(self) -> Budget:
@@ -210,6 +221,14 @@ class LinearVerdict(Verdict):
         turns = [(k + 0.5) / points / 2 for k in range(points)]
         needs = loop.required_dampings_at([cos(2 * pi * t) for t in turns])
         return [t / float(loop.period) for t in turns], needs
+
+    def evidence(self) -> dict[str, Any]:
+        """Proofs and motions as plain data; of intervals those at the best corner too."""
+        best = self.best_corner
+        if best is None:
+            return super().evidence()
+        name = "violation" if isinstance(best, Violation) else "witness"
+        return {**super().evidence(), "best_corner": {"outcome": "active", name: best.saved()}}
 
     def numbers(self) -> dict[str, Any]:
         """Limits, margins and advice as plain data, a unit in every key of a physical quantity."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -26,7 +26,9 @@ from zwidth.passivity.wording import (
     lines,
 )
 from zwidth.quantity.answered import known
+from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Parametric, parameters_of
 from zwidth.quantity.text import in_words, shown, shown_at_least
 
 if TYPE_CHECKING:
@@ -128,10 +130,18 @@ def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
 def _active(verdict: Found, advice: Iterable[Advice]) -> str:
     is_replayed = verdict.scope.transmission == "as given"  # no motion of two bodies is more than that
     if verdict.witness is not None and not is_replayed:
-        return with_what_to_do(claim_of_a_motion(verdict.witness), advice, "active")
+        return with_what_to_do(f"{claim_of_a_motion(verdict.witness)}{_at(verdict)}", advice, "active")
     assert verdict.violation is not None
     any_amount = f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
-    return with_what_to_do(any_amount, advice, "active") + ("" if is_replayed else f" {UNWRITTEN}")
+    return with_what_to_do(f"{any_amount}{_at(verdict)}", advice, "active") + (
+        "" if is_replayed else f" {UNWRITTEN}"
+    )
+
+
+def _at(verdict: Found) -> str:
+    """Of intervals, every value of which is active: at which the motion is."""
+    where = where_active(verdict)
+    return f" (at {where}; others do at every other value of its intervals)" if where else ""
 
 
 def _of_one_that_leaves(verdict: Found) -> str:
@@ -150,6 +160,35 @@ def assumptions(verdict: Found) -> tuple[str, ...]:
     """What the claim covers and takes for granted, line by line."""
     between = intervals(verdict.scope, verdict.outcome)
     return (*lines(verdict.scope, verdict.outcome), *([] if between is None else [between]))
+
+
+def active_at(verdict: Found) -> dict[str, float]:
+    """Of the parameters that are intervals the values at which energy was shown to come out, in SI."""
+    if verdict.violation is None and verdict.motion is None:
+        return {}
+    own = {name: getattr(verdict.device, name, None) for name, *_ in verdict.scope.bounds}
+    box = getattr(verdict, "box", None)  # of laws with H(z)
+    law = {} if box is None else dict(_chosen(box[1], verdict.environment))
+    return {name: float(value) for name, value in {**own, **law}.items() if isinstance(value, Exact)}
+
+
+def where_active(verdict: Found) -> str:
+    """The same in words."""
+    motion = verdict.scope.motion
+    return ", ".join(
+        f"{in_words(name)} {shown(value, GLOSSARY[name].unit_for(motion))}"
+        for name, value in active_at(verdict).items()
+    )
+
+
+def _chosen(given: Any, at: Any) -> Iterator[tuple[str, Any]]:
+    """By the names of the glossary, what stands in the place of intervals at any depth."""
+    for name, one in parameters_of(type(given)).items():
+        value = getattr(given, name)
+        if isinstance(value, Interval):
+            yield one.quantity.name, getattr(at, name)
+        elif isinstance(value, Parametric):
+            yield from _chosen(value, getattr(at, name))
 
 
 _ROADS = {
@@ -199,9 +238,12 @@ def _undecided(verdict: Found) -> str:
             "for intervals of these parameters together."
         )
     if verdict.finding == "depends on values":
+        found, moved = verdict.violation or verdict.motion, verdict.witness
+        assert found is not None
+        gains = found.describe() if moved is None else claim_of_a_motion(moved).replace("A ", "a ", 1)
         return (
-            "The answer depends on where in its intervals the loop lies: energy can be taken out at the "
-            "worst corner, and for other values that is not known."
+            f"Active for some values of its intervals: at {where_active(verdict)} {gains}. Of other values "
+            "in them that is not known."
         )
     if verdict.finding == "no lowest energy":
         return (

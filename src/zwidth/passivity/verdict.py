@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.model.device import Device
 from zwidth.passivity.advice import Advice, in_lines
-from zwidth.passivity.outcome_evidence import Found, assumptions, claim, decided_by
+from zwidth.passivity.outcome_evidence import Found, active_at, assumptions, claim, decided_by
 from zwidth.quantity.answered import answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -52,6 +52,17 @@ class Verdict(Found):
     def decided_by(self) -> str:
         """The road on which the outcome was found, in a few words."""
         return decided_by(self)
+
+    @property
+    @answers(
+        "where energy comes out at values in intervals: which they are; `violation` and `witness` are of "
+        "them. With `undecided` it may not come out at others",
+        quantities=True,
+        optional=True,
+    )
+    def active_at(self) -> Mapping[str, float] | None:
+        """The values in its intervals at which energy was shown to come out; None where none was."""
+        return active_at(self) or None
 
     @property
     def max_stiffness(self) -> float | None:

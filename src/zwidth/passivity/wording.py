@@ -283,7 +283,8 @@ def intervals(scope: Scope, outcome: Outcome) -> str | None:
     within = {name: f"{in_words(name)} {_between(name, ends, scope.motion)}" for name, *ends in scope.bounds}
     values = ", ".join(within.get(name, in_words(name)) for name in scope.intervals)
     holds = "" if outcome == "undecided" else "holds for every value "
-    return f"{holds}within {values}; numbers are of the worst corner"
+    numbers = "numbers and motion" if outcome == "active" else "numbers"
+    return f"{holds}within {values}; {numbers} are of the worst corner"
 
 
 def _between(name: str, ends: Sequence[float], motion: str) -> str:

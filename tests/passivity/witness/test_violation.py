@@ -190,9 +190,16 @@ def test_intervals_need_the_best_corner():
     law = zw.Wall(1000)
     both = check_by_closed_forms(device((Fraction(1, 10), Fraction(2, 10))), law)
     assert (both.outcome, both.violation.verify()) == ("active", True)
-    assert both.violation.setting.loop.damping == Fraction(2, 10)
+    assert (both.violation.setting.loop.damping, both.active_at) == (Fraction(1, 10), {"damping": 0.1})
+    assert both.best_corner.setting.loop.damping == Fraction(2, 10)
+    document = both.to_dict()
+    assert document["active_at"] == {"damping_N_s_per_m": 0.1}
+    assert len(judge(document).parts) == 3
     part = check_by_closed_forms(device((Fraction(1, 10), 1)), law)
     assert (part.outcome, part.violation.setting.loop.damping) == ("undecided", Fraction(1, 10))
+    assert (part.active_at, part.claim.startswith("Active for some values of its intervals")) == (
+        {"damping": 0.1}, True
+    )  # fmt: skip
 
 
 def test_the_motion_is_made_when_it_is_asked_for(monkeypatch):

@@ -196,6 +196,9 @@ def _pieces(verdict: Answer) -> Iterator[tuple[str, Evidence]]:
         piece = getattr(verdict, name, None)
         if isinstance(piece, Evidence):
             yield _NAMES[name], piece
+    best = getattr(verdict, "best_corner", None)
+    if best is not None:
+        yield "The same at the best values of the intervals", best
     bounded = getattr(verdict, "available_storage", None)
     if bounded is not None and bounded.certificate is not None:
         yield "The certificate for bounded hands", bounded.certificate
