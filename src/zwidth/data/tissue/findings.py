@@ -15,7 +15,7 @@ from zwidth.data.tissue.model import Model, Record
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import decaying, samples
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import quantity_unit, shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -52,7 +52,7 @@ def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
-            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may come "
+            f"the position is read in steps of {shown(grid.step, 'm', 3)}, and most of what the fit leaves may come "
             "from them: the intervals take the position for exact and are too narrow; move further, or read "
             "it more finely"
         )
