@@ -5,7 +5,8 @@
 Everything is computed in SI, and radians are what a file holds: its keys say so.  What a person
 reads is told in the angle that the person typed.  While a command reads its values, `units` notes
 the angles among them; once one was in degrees every angle of the answer is, so that what is compared
-has one unit: that of the stiffness, where it was typed per angle.  In Python nothing is noted: answers are in radians, or as `answers_in` says.
+has one unit: that of the stiffness, where it was typed per angle.  In Python nothing is noted: answers
+are in radians, or as `answers_in` says.
 """
 
 from __future__ import annotations
@@ -73,7 +74,10 @@ def _noting(noted: set[tuple[int, str]]) -> Iterator[None]:
 
 
 def note(unit: str, rank: int = 0) -> None:
-    """Take down the angle in a unit that a person typed: "N*m/deg" has degrees; 1 is of a stiffness, 2 asked for."""
+    """Take down the angle in a unit that a person typed: "N*m/deg" has degrees.
+
+    The highest rank is told: 2 of what is asked for, 1 of a stiffness, 0 of anything else.
+    """
     noted = _NOTED.get()
     if noted is not None:
         noted.update((rank, _WORDS[word]) for word in _WORD.findall(unit) if word in _WORDS)

@@ -52,9 +52,9 @@ def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
-            f"the position is read in steps of {shown(grid.step, 'm', 3)}, and most of what the fit leaves may come "
-            "from them: the intervals take the position for exact and are too narrow; move further, or read "
-            "it more finely"
+            f"the position is read in steps of {shown(grid.step, 'm', 3)}, and most of what the fit leaves "
+            "may come from them: the intervals take the position for exact and are too narrow; move further, "
+            "or read it more finely"
         )
 
 

@@ -341,7 +341,8 @@ def _why_not(found: Judged) -> str:
     lost = found.counted and found.ideal.outcome in PROVED
     where = f", in {number}" if lost else ""
     said = f"this is not emitted, it is {verdict.outcome}{where}: {verdict.claim}"
-    return f"{said} {found.statement if lost else ''}Soften the wall, raise the rate, or give anyway=True (--anyway)"
+    more = found.statement if lost else ""
+    return f"{said} {more}Soften the wall, raise the rate, or give anyway=True (--anyway)"
 
 
 def _target(target: str) -> Target:
