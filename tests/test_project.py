@@ -179,6 +179,12 @@ def test_the_readme_table_is_what_comes_out():
         assert zw.ports.passivity_indices(wall).passive
 
 
+def test_whoever_builds_the_docs_has_the_explorer():
+    """The page that computes as one plays is made of it."""
+    extras = PYPROJECT["project"]["optional-dependencies"]
+    assert set(extras["explore"]) <= set(extras["docs"])
+
+
 def _bounds():
     """The lower bounds of each library that is asked for, but for those of the docs."""
     project = PYPROJECT["project"]

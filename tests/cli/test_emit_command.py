@@ -42,6 +42,21 @@ def test_the_exit_status(run, loop, status):
     assert Path("wall").exists() == (status == 0)
 
 
+def test_many_detents_for_a_board(run):
+    """The rounding of a search in 50 points is bounded; where nothing bounds it, what would do is told."""
+    device = "--inertia 2e-5 --damping 0.001 --coulomb-friction 0.002 --counts-per-turn 16384 --rate 1000"
+    points = "--type nonlinear-spring --positions '{}' --forces '{}'"
+
+    def zigzag(n):
+        forces = (f"{(-1) ** (k + 1)} mN*m" for k in range(n))
+        return points.format(", ".join(str(k / 8) for k in range(n)), ", ".join(forces))
+
+    run(f"emit {device} {zigzag(50)} --target simplefoc -o knob --json")
+    message = run(f"emit {device} {zigzag(140)} --target simplefoc -o more", 3).err
+    assert "at most 129 points" in message
+    assert "--number double" in message
+
+
 def test_anyway(run):
     assert "ACTIVE" in run("emit haptic-paddle --stiffness 770 --anyway -o wall").out
     assert "NOT PROVED" in Path("wall", "law.h").read_text(encoding="utf-8")

@@ -36,8 +36,8 @@ def laws() -> dict[str, Callable[[], Law]]:
     random = np.random.default_rng(3)
     taps = [Fraction(int(n), 1000) for n in random.integers(-999, 1000, 101)]
     poles = np.poly([0.9, 0.5, -0.3, 0.8 + 0.1j, 0.8 - 0.1j, 0.2j, -0.2j, 0.99]).real
-    points = np.round(np.cumsum(random.integers(1, 9, 60)) * 1e-4, 6)
-    forces = np.round([-1, *random.normal(size=58), 1], 3)
+    points = np.round(np.cumsum(random.integers(1, 9, 160)) * 1e-4, 6)
+    forces = np.round([-1, *random.normal(size=158), 1], 3)
     given: dict[str, Environment] = {
         "spring": wall,
         "damped": damped,

@@ -44,6 +44,7 @@ def laws() -> dict[str, Environment]:
         "everywhere order 8": _resonant(0.9, (0.2, 0.7, 1.3, 2.9)),
         "everywhere fir": zw.PulseTransferFunction(["91.7", "-13.3", "40.1", "7.7"], [1, 0, 0, 0]),
         "damper": zw.render(zw.Wall(300), rendering.Damper("0.7", rendering.AdaptiveWindow(longest=1))),
+        "detents": zw.NonlinearSpring.detents(3, "0.002", "0.5"),
         "hysteresis": zw.render(zw.Wall(300), rendering.Hysteresis("0.3", 900)),
         "saturation": zw.render(zw.Wall(613.7, damping="1.37"), rendering.Saturation(3)),
         "chain": zw.render(

@@ -140,6 +140,15 @@ def test_nobody_asked():
         assert all(spoken(unit) == (1.0, unit) for unit in ROTARY)
 
 
+def test_the_stiffness_says_in_which_angle():
+    """Whatever the encoder was typed in; where it was typed in none, the others say."""
+    for typed, told_in in (("15 N*m/rad", "rad"), ("0.3 N*m/deg", "deg"), ("15", "turn")):
+        with answers_as_typed():
+            parse_number("0.001 turn", "rad", "resolution")
+            parse_number(typed, "N*m/rad", "stiffness")
+            assert spoken("N*m/rad")[1] == f"N*m/{told_in}"
+
+
 def test_whoever_types_degrees():
     """Every angle of the answer is in degrees once one was typed so, above and below the bar."""
     with answers_as_typed():

@@ -223,7 +223,7 @@ def heed_angles(arguments: argparse.Namespace) -> None:
     if arguments.angles is not None:
         if arguments.angles not in ANGLES:
             raise InputError(f"--angles is one of {', '.join(ANGLES)}, got {arguments.angles[:40]!r}")
-        note(arguments.angles)
+        note(arguments.angles, 2)
 
 
 def joined(arguments: Sequence[str]) -> list[str]:

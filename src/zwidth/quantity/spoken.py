@@ -5,7 +5,8 @@
 Everything is computed in SI, and radians are what a file holds: its keys say so.  What a person
 reads is told in the angle that the person typed.  While a command reads its values, `units` notes
 the angles among them; once one was in degrees every angle of the answer is, so that what is compared
-has one unit.  In Python nothing is noted: answers are in radians, or as `answers_in` says.
+has one unit: that of the stiffness, where it was typed per angle.  In Python nothing is noted: answers
+are in radians, or as `answers_in` says.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ _ANGLES = {"deg": 180 / pi, "turn": 0.5 / pi, "rad": 1.0}
 _WORDS = {
     **dict.fromkeys(("deg", "degree", "degrees"), "deg"),
     **dict.fromkeys(("turn", "turns", "rev", "revs"), "turn"),
+    **dict.fromkeys(("rad", "mrad"), "rad"),
     "rpm": "rpm",
 }
 ANGLES = (*_ANGLES, "rpm")
@@ -36,7 +38,7 @@ ANGLES = (*_ANGLES, "rpm")
 _WORD = re.compile(r"[A-Za-z]+")
 _RADIAN = re.compile(r"\brad(?:\^([0-9.]+))?(?![A-Za-z])")
 
-_NOTED: ContextVar[set[str] | None] = ContextVar("angles that were typed", default=None)
+_NOTED: ContextVar[set[tuple[int, str]] | None] = ContextVar("angles that were typed", default=None)
 
 
 @contextmanager
@@ -58,12 +60,12 @@ def answers_in(*units: str) -> Iterator[None]:
     unknown = [unit for unit in units if unit not in ANGLES]
     if unknown:
         raise InputError(f"an angle is told in rad, deg or turn, a speed also in rpm; got {unknown[0]!r}")
-    with _noting(set(units)):
+    with _noting({(0, unit) for unit in units}):
         yield
 
 
 @contextmanager
-def _noting(noted: set[str]) -> Iterator[None]:
+def _noting(noted: set[tuple[int, str]]) -> Iterator[None]:
     token = _NOTED.set(noted)
     try:
         yield
@@ -71,19 +73,21 @@ def _noting(noted: set[str]) -> Iterator[None]:
         _NOTED.reset(token)
 
 
-def note(unit: str) -> None:
-    """Take down the angle in a unit that a person typed: "N*m/deg" has degrees."""
+def note(unit: str, rank: int = 0) -> None:
+    """Take down the angle in a unit that a person typed: "N*m/deg" has degrees.
+
+    The highest rank is told: 2 of what is asked for, 1 of a stiffness, 0 of anything else.
+    """
     noted = _NOTED.get()
     if noted is not None:
-        noted.update(_WORDS[word] for word in _WORD.findall(unit) if word in _WORDS)
+        noted.update((rank, _WORDS[word]) for word in _WORD.findall(unit) if word in _WORDS)
 
 
 def angles_in(value: object) -> frozenset[str]:
     """The angles in the units of a text, a list or a table: {"deg"} of "0.5 N*m/deg"; rad, deg, turn, rpm."""
     if isinstance(value, str):
         words = _WORD.findall(value.replace("°", " deg "))
-        radians = {"rad" for word in words if word.removeprefix("m") == "rad"}
-        return frozenset({_WORDS[word] for word in words if word in _WORDS} | radians)
+        return frozenset(_WORDS[word] for word in words if word in _WORDS)
     parts = (
         value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ()
     )
@@ -91,14 +95,21 @@ def angles_in(value: object) -> frozenset[str]:
 
 
 def angles_typed() -> frozenset[str]:
-    """Those that were noted so far."""
-    return frozenset(_NOTED.get() or ())
+    """Those that were noted so far, as far as they are told."""
+    return _told(frozenset(_NOTED.get() or ()))
 
 
 def spoken(unit: str) -> tuple[float, str]:
     """(factor, unit) in which a value in an SI unit is told: (π/180, "N*m/deg") for "N*m/rad" in degrees."""
     noted = _NOTED.get()
-    return _spoken(unit, frozenset(noted)) if noted else (1.0, unit)
+    return _spoken(unit, _told(frozenset(noted))) if noted else (1.0, unit)
+
+
+def _told(noted: frozenset[tuple[int, str]]) -> frozenset[str]:
+    """Of those typed the angles of the highest rank, and rpm."""
+    angles = [one for one in noted if one[1] in _ANGLES]
+    most = max(angles, default=(0, ""))[0]
+    return frozenset(name for rank, name in noted if rank == most or name == "rpm")
 
 
 def spoken_data(found: Dataset) -> Dataset:

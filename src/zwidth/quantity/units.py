@@ -82,7 +82,7 @@ def _parse_text(value: str, unit: str, what: str) -> Exact:
             raise
         raise InputError(f'{_is(what, unit)}; got "{_short(value)}": {error}') from None
     if wanted.dimension[4]:  # of an angle, or per angle; counts per turn are a plain number
-        note(rest)
+        note(rest, int(wanted.dimension == (1, 2, -2, 0, -1)))  # a stiffness says what the others are told in
     return read
 
 

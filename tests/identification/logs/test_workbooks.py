@@ -330,6 +330,7 @@ def test_tests_side_by_side(path):
         ),
         ("Time [s];Force [mN];Depth [mm];Time [s];Force [mN];Depth [mm]", "{t};{f};{x};{t};{x};{f}"),
         ("Time [s];Force 1 [mN];Depth 1 [mm];Force 2 [mN];Depth 2 [mm]", "{t};{f};{x};{x};{f}"),
+        ("Time [s];Depth [mm];Force 1 [mN];Force 2 [mN]", "{t};{f};{f};{x}"),
     ):
         path.write_text(f"{head}\n" + rows(f"{line}\n"))
         first, second = read_tests(path)

@@ -176,9 +176,12 @@ def test_a_force_that_falls_while_the_probe_goes_on_is_of_no_tissue(seed):
 
 def test_a_table_without_time_is_told_what_is_missing(tmp_path):
     path = tmp_path / "press.csv"
-    path.write_text("Depth (mm),Load (N)\n0,0\n1,0.2\n2,0.5\n", encoding="utf-8")
-    with pytest.raises(zw.InputError, match=r'load against depth, "Depth .mm.", "Load .N.", without time'):
-        zw.tissue.read_test(path)
+    for times in (1, 2):  # one test, and two side by side
+        lines = (",".join([line] * times) for line in ("Depth (mm),Load (N)", "0,0", "1,0.2", "2,0.5"))
+        path.write_text("\n".join([*lines, ""]), encoding="utf-8")
+        told = r'load against depth, "Depth .mm.", "Load .N.", without time.*--type nonlinear-spring --pos'
+        with pytest.raises(zw.InputError, match=told):
+            zw.tissue.read_test(path)
 
 
 @pytest.mark.parametrize("stated", [True, False])

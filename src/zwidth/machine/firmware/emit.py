@@ -337,11 +337,12 @@ def _why_not(found: Judged) -> str:
         other = "a device with more Coulomb friction or a finer converter"
         if number != "double":
             other = 'number="double" (on the command line --number double)'
-        return f"{said} Take {other}, another law, or say anyway"
+        return f"{said} Take {other}, another law, or anyway=True (--anyway)"
     lost = found.counted and found.ideal.outcome in PROVED
     where = f", in {number}" if lost else ""
     said = f"this is not emitted, it is {verdict.outcome}{where}: {verdict.claim}"
-    return f"{said} {found.statement if lost else ''}Soften the wall, raise the rate, or say anyway"
+    more = found.statement if lost else ""
+    return f"{said} {more}Soften the wall, raise the rate, or give anyway=True (--anyway)"
 
 
 def _target(target: str) -> Target:

@@ -38,9 +38,16 @@ from zwidth.machine.firmware.program import (
     Store,
     Variable,
 )
+from zwidth.machine.firmware.specialise import LONGEST_SEARCH
 from zwidth.native.names import by_kind
 
 Rounded = Operation | Store
+
+
+UNBOUNDED = (
+    "it runs through a loop whose passes depend on what is measured; a search in at most "
+    f"{LONGEST_SEARCH + 1} points is written out, and has a bound"
+)
 
 
 class NoBound(Exception):
@@ -125,7 +132,7 @@ class Evaluation:
         for s in body:
             follow = by_kind(self, s)
             if follow is None:
-                raise NoBound("it runs through a loop whose passes depend on what is measured")
+                raise NoBound(UNBOUNDED)
             follow(s, way, keep)
 
     def _store(self, s: Store, way: _Way, keep: bool) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import ceil, floor
 
 from zwidth.machine.firmware.bound import Bound
-from zwidth.machine.firmware.evaluation import NoBound, Rounded
+from zwidth.machine.firmware.evaluation import UNBOUNDED, NoBound, Rounded
 from zwidth.machine.firmware.program import (
     Branch,
     Cells,
@@ -113,7 +113,7 @@ class _Lowering:
         """A statement in whole numbers."""
         lower = by_kind(self, s)
         if lower is None:
-            raise NoBound("it runs through a loop whose passes depend on what is measured")
+            raise NoBound(UNBOUNDED)
         self.now, self.out = s, []
         lower(s)
         return self.out

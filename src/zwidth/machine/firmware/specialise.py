@@ -61,6 +61,9 @@ from zwidth.native.names import Defined, OutsideError, counted
 MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""
 
+LONGEST_SEARCH = 128
+"""Steps between the ends of a table: a search in a longer one stays a loop, whose rounding nothing bounds."""
+
 
 def specialised(
     function: Callable[..., Any], arguments: Sequence[Any], apart: Sequence[Callable[..., Any]] = ()
@@ -314,7 +317,7 @@ class _Writer(Expressions):
         changed = assigned(node.body)
         held = [self.names[name] for name in changed if name in self.names]
         ends = [h for h in held if is_known(h) and kind_of(h) == "integer"]
-        short = ends and max(ends) - min(ends) <= MOST_WRITTEN_OUT
+        short = ends and max(ends) - min(ends) <= LONGEST_SEARCH
         if len(ends) != len(held) or not short or self.depth or may_leave(node.body):
             return False
         if any(isinstance(n, ast.Call | ast.Subscript) for n in ast.walk(node.test)):

@@ -211,7 +211,7 @@ class PairServo:
             raise PairNotProved(
                 self.verdict,
                 f"this pair is not served, it is {self.verdict.outcome}: {self.verdict.claim} Soften its "
-                "spring, raise the rate, or say anyway, with a small force limit",
+                "spring, raise the rate, or give anyway=True (--anyway), with a small force limit",
             )
         self._law.begin()
         self._loop(count, self._law.forces)

@@ -78,7 +78,7 @@ def refuse_not_proved(verdict: Verdict, measured: Measured) -> None:
             verdict,
             f"this is not served, it is {verdict.outcome}: {verdict.claim} That is as measured here, "
             f"samples {late} late and forces {exchange} after them. Soften the wall, raise the rate, or "
-            "say anyway, with a small force limit",
+            "give anyway=True (--anyway), with a small force limit",
         )
 
 

@@ -109,7 +109,7 @@ def recognised(
     found: dict[str, str] = {}
     beside = {} if chosen else _side_by_side(table)
     tests = max(map(len, beside.values()), default=1)
-    chosen |= {quantity: names[min(number, len(names)) - 1] for quantity, names in beside.items()}
+    chosen |= {quantity: names[min(number, len(names)) - 1] for quantity, names in beside.items() if names}
     for quantity in QUANTITIES:
         found[quantity] = _column(table, quantity, chosen, [*found.values(), *chosen.values()])
     _refuse_without_unit(table, found, units)
@@ -128,16 +128,16 @@ def recognised(
 
 def _side_by_side(table: Table) -> dict[str, list[str]]:
     """The columns of several tests beside each other, named alike but for a number; {} where there are not.
-    They may have one column of time together."""
+    They may have one column of time together, and one of indentation."""
     found: dict[str, list[str]] = {}
     for quantity in QUANTITIES:
         taken = [name for names in found.values() for name in names]
         found[quantity] = _candidates(table, quantity, [name for name in table.units if name not in taken])
     tests = max(map(len, found.values()))
     stems = [{re.sub(r"\s*\d+", "", _AGAIN.sub("", n)).lower() for n in names} for names in found.values()]
-    alike = all(len(each) == 1 for each in stems)
-    own = len(found["indentation"]) == len(found["force"]) == tests
-    return found if tests > 1 and alike and own and len(found["time"]) in (1, tests) else {}
+    alike = all(len(each) == 1 for each in stems if each)
+    shared = all(len(names) in (1, tests) for names in found.values() if names)
+    return found if tests > 1 and alike and shared and len(found["force"]) == tests else {}
 
 
 def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[str]) -> str:
@@ -161,8 +161,9 @@ def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[
         raise InputError(
             f"{table.source}: a table of load against depth, {listed([names[0] for names in others])}, "
             "without time: how a tissue relaxes is not in it. Export the time of each row, or write it in a "
-            "column time_s where rows came at a steady rate; the steepest slope is the stiffness of a wall "
-            "to ask about, zwidth check --stiffness"
+            "column time_s where rows came at a steady rate; or render the curve as a spring by some of its "
+            'points: zwidth check DEVICE --type nonlinear-spring --positions "0, 1 mm, 2 mm" --forces '
+            '"0, 0.1 N, 0.4 N"'
         )
     if not candidates:
         raise InputError(

@@ -18,14 +18,15 @@
 
 // ---- what differs from one motor to the next ------------------------------------------------------------
 
-#define PULSES 2048        // of the encoder in a turn; it counts four times as many
+#define PULSES 2048        // of the encoder in a turn; it counts four times as many (a sensor of 14 bits: 4096)
 #define SENSE 1            // -1 where the angle falls while the handle goes into the wall
-#define TORQUE_PER_TARGET 0.05f  // [N*m] of the motor for a target of 1 A, or 1 V in voltage mode
+#define TORQUE_PER_TARGET 0.05f  // [N*m] of the motor for a target of 1 A, k_t = 9.55/(rpm/V); of 1 V k_t/R
 #define BAUD 115200
 
 BLDCMotor motor = BLDCMotor(7);
 BLDCDriver3PWM driver = BLDCDriver3PWM(9, 5, 6, 8);
-Encoder sensor = Encoder(2, 3, PULSES);
+Encoder sensor = Encoder(2, 3, PULSES);  // a magnetic one is MagneticSensorSPI sensor(AS5147_SPI, 10); or
+// MagneticSensorI2C sensor(AS5600_I2C); then on_a, on_b and the line with enableInterrupts go
 
 void on_a() { sensor.handleA(); }
 void on_b() { sensor.handleB(); }
