@@ -13,6 +13,7 @@ from zwidth.cli.loop_lines import environment_line
 from zwidth.cli.page import below, grid, headline, items, more_with_all, page, section
 from zwidth.data.identification.device.estimate import MOST_CONFIDENCE
 from zwidth.data.identification.device.table import (
+    OF_WALLS,
     advice,
     assumed,
     percent,
@@ -132,7 +133,7 @@ def _numbers(found: Identification) -> Iterator[Table | Text]:
     one = found.identified
     why = perhaps_zero(one, found.confidence) | perhaps_zero(one, _SHOWN)
     zero = "".join(f"{name} may be 0 for a wall: {text}\n" for name, text in why.items())
-    yield Text.assemble((zero, "yellow"), (assumed(one), "dim"))
+    yield Text.assemble((zero, "yellow"), (f"{assumed(one)}\n{OF_WALLS}", "dim"))
     force = "N*m" if one.motion == "rotary" else "N"
     yield Text(
         f"r² = {one.explained:.4f}, noise {shown(one.force_noise, force, 3)} per sample, "

@@ -63,15 +63,16 @@ EACH_SIDE = (
 )
 """What is said instead where the log shows that they do not."""
 
-_OF_WALLS = (
-    "intervals of m, b and f_c are of the mean of both directions; that of a wall begins at the least that "
-    "friction may be, either way and at every speed that was seen"
+OF_WALLS = (
+    "intervals of m, b and f_c are of the mean of both ways; that of a wall begins at the least friction, "
+    "either way and at any speed seen"
 )
+"""Which interval is of what."""
 
 
 def assumed(identified: IdentifiedNumbers) -> str:
-    """Whose numbers these are, and what of them the walls count."""
-    return f"{BOTH_SIDES if identified.cable is None else EACH_SIDE}; {_OF_WALLS}"
+    """Whose numbers these are."""
+    return BOTH_SIDES if identified.cable is None else EACH_SIDE
 
 
 class Row(NamedTuple):
@@ -147,6 +148,7 @@ def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[
     yield ""
     yield facts(identified)
     yield assumed(identified)
+    yield OF_WALLS
     if identified.findings:
         yield Lines(identified.findings)
 
