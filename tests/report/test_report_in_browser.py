@@ -26,6 +26,18 @@ def test_nothing_stands_in_the_way_of_a_reader(page: Page, address: str) -> None
         assert not [(one["id"], one["impact"]) for one in found], scheme
 
 
+def test_no_table_is_cut_on_paper(page: Page, address: str) -> None:
+    """Each is shorter than the 265 mm that A4 has between its margins, and goes to the next page whole."""
+    page.goto(address)
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 673, "height": 900})  # 178 mm
+    tables = page.locator("table").evaluate_all(
+        "all => all.map((one) => [getComputedStyle(one).breakInside, one.clientHeight, one.scrollWidth])"
+    )
+    assert len(tables) > 2
+    assert all(kept == "avoid" and height < 1001 and width <= 673 for kept, height, width in tables)
+
+
 def test_the_proof_can_be_saved(page: Page, address: str) -> None:
     page.goto(address)
     with page.expect_download() as saving:

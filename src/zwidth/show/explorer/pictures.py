@@ -37,8 +37,11 @@ from zwidth.show.plots.planes import (
 from zwidth.show.plots.style import drawn_in, number, scale
 
 BLUE, ORANGE, GREEN, RED, VIOLET = "#3a7bd5", "#c9730a", "#2e9e6b", "#d64545", "#8e6bd1"
-GREY = "#757b84"
-"""Of all that is no curve: can be read on white and on black."""
+GREY = "#5d636c"
+"""Of all that is no curve."""
+
+_DARK = "@media (prefers-color-scheme: dark) { .bk-Canvas { filter: invert(1) hue-rotate(180deg); } }"
+"""No grey can be read on white and on black: in the dark what is light and what is dark change places."""
 
 HEIGHT = 330
 
@@ -50,8 +53,8 @@ def new_figure(x: str, y: str, *, height: int = HEIGHT, **options: Any) -> Any:
     """
     made = figure(
         x_axis_label=x, y_axis_label=y, height=height, min_width=200, sizing_mode="stretch_width",
-        tools="pan,box_zoom,reset,save", active_drag=None, background_fill_alpha=0, border_fill_alpha=0,
-        outline_line_color=GREY, outline_line_alpha=0.4, **options,
+        tools="pan,box_zoom,reset,save", active_drag=None, stylesheets=[_DARK], outline_line_color=GREY,
+        background_fill_alpha=0, border_fill_alpha=0, outline_line_alpha=0.4, **options,
     )  # fmt: skip
     made.toolbar.logo = None
     made.toolbar.autohide = True
@@ -132,7 +135,8 @@ class CriterionPicture:
         factor, told = drawn_in("damping", motion)
         finite = [factor * (need if isfinite(need) else high) for need in needs]
         self.figure.visible = True
-        self._x.update(start=0, end=0.51 / float(verdict.decision.loop.period))
+        most = 0.5 / float(verdict.decision.loop.period)
+        self._x.update(start=-0.02 * most, end=1.02 * most)  # no half of a dot at either end
         self._y.update(start=factor * low, end=factor * high)
         self.figure.yaxis[0].axis_label = f"damping [{told}]"
         needed = array(finite)  # arrays are sent as they are, lists number by number

@@ -51,8 +51,10 @@ figure { margin: 1rem 0; break-inside: avoid }
 img { background: #fff; border-radius: .3rem }
 figcaption { color: var(--soft); font-size: .92rem }
 @media (max-width: 34rem) { table { font-size: .88rem } th, td { padding-right: .5rem } }
+@page { margin: 16mm }
 @media print {
   :root { --text: #000; --soft: #333; --line: #bbb; --ground: #fff; --link: #000 }
+  table, li, p { break-inside: avoid }
   body { max-width: none; padding: 0; font-size: 10pt }
 }
 """

@@ -140,15 +140,18 @@ _LEAST_LATENESS = 0.1
 """The logarithmic axis has no 0: the least that is drawn [µs]."""
 
 _BLUE, _ORANGE, _GREEN, _RED, _VIOLET = "#3a7bd5", "#e08a1e", "#2e9e6b", "#d64545", "#8e6bd1"
-_GREY = "#757b84"
-"""Of all that is no curve: can be read on white and on black."""
+_GREY = "#5d636c"
+"""Of all that is no curve."""
+
+_DARK = "@media (prefers-color-scheme: dark) { .bk-Canvas { filter: invert(1) hue-rotate(180deg); } }"
+"""No grey can be read on white and on black: in the dark what is light and what is dark change places."""
 
 _STYLE = """{% block postamble %}<style>
-:root { color-scheme: light dark; }
+:root { color-scheme: light dark; --words: #5d636c; }
 html, body { margin: 0; height: 100%; }
 body { display: flex; flex-direction: column; background: #fff; font-family: system-ui, sans-serif; }
 body > div > div { flex: 1; min-height: 640px; padding: 6px; box-sizing: border-box; }
-@media (prefers-color-scheme: dark) { body { background: #14171c; } }
+@media (prefers-color-scheme: dark) { :root { --words: #a7adb6; } body { background: #14171c; } }
 </style>{% endblock %}"""
 
 _HEARD = "const n = source.data.number; if (n.length) words.tags = [n[n.length - 1]];"
@@ -174,7 +177,7 @@ def make_document(document: Any, shown: Shown) -> None:
     band = shown.envelope.after(-1)
     source = models.ColumnDataSource(_columns(band, shown.rows))
     words = models.Div(
-        styles={"color": _GREY, "font-size": "13px"}, sizing_mode="stretch_width", tags=[band.newest]
+        styles={"color": "var(--words)", "font-size": "13px"}, sizing_mode="stretch_width", tags=[band.newest]
     )
     words.text = _words(shown)
     heard = models.CustomJS(args={"source": source, "words": words}, code=_HEARD)
@@ -300,7 +303,7 @@ def _maker(time: Any) -> Callable[..., Any]:
         values = models.DataRange1d(only_visible=True, default_span=1e-3)
         figure = plotting.figure(
             x_range=time, y_range=values, y_axis_label=label, min_height=120, sizing_mode="stretch_both",
-            tools="pan,wheel_zoom,box_zoom,reset", active_drag=None, active_scroll=None,
+            tools="pan,wheel_zoom,box_zoom,reset", active_drag=None, active_scroll=None, stylesheets=[_DARK],
             background_fill_alpha=0, border_fill_alpha=0, outline_line_color=_GREY, outline_line_alpha=0.4,
             **options,
         )  # fmt: skip
