@@ -25,7 +25,8 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from zwidth.data.logs.served import MAGIC, ZSTD, Mcap, not_installed
+from zwidth import installing
+from zwidth.data.logs.served import MAGIC, ZSTD, Mcap
 from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, nearest, readable
 from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
@@ -92,7 +93,7 @@ def _opened(path: Path) -> Any:
         from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError:
-        raise not_installed(path) from None
+        raise installing.needed(f"rosbags, which reads {path},", "logs") from None
     return AnyReader([path], default_typestore=get_typestore(Stores.LATEST))
 
 

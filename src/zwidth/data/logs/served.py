@@ -103,12 +103,6 @@ def mcap_parts(path: Path, head: Head) -> Iterator[Part]:
         yield Part(np.empty((0, len(head.columns))), [], last=True)
 
 
-def not_installed(path: Path) -> InputError:
-    """Of a file that takes the library of the extra `logs`."""
-    said = f"{path} cannot be read: a library for ROS bags and MCAP is not installed; type"
-    return InputError(said, installing.line("logs"))
-
-
 def records(file: IO[bytes], path: Path) -> Iterator[_Record]:
     """Whole records, one after the other."""
     if file.read(len(MAGIC)) != MAGIC:
@@ -401,7 +395,7 @@ class Mcap:
         try:
             from rosbags import typesys
         except ImportError:
-            raise not_installed(self.path) from None
+            raise installing.needed(f"rosbags, which reads {self.path},", "logs") from None
         store = typesys.get_typestore(typesys.Stores.EMPTY if text else typesys.Stores.LATEST)
         try:
             if form.endswith("idl"):
