@@ -11,23 +11,39 @@ import re
 import shlex
 import shutil
 import sys
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from zwidth.errors import InputError
+
 _WINDOWS = os.name == "nt"
 
 
-def line(extra: str = "", package: str = "") -> str:
-    """``pip install 'zwidth[extra]'`` as it works here.
+def needed(what: str, extra: str = "", *, package: str = "", otherwise: str = "") -> InputError:
+    """The message that it is not installed, what to do without it, and the command of `line`."""
+    way_out = f"{otherwise}, or type" if otherwise else "type"
+    return InputError(f"{what} is not installed; {way_out}", line(extra, package))
 
-    Parameters
-    ----------
-    extra
-        Of the optional dependencies in pyproject.toml.
-    package
-        In the place of zwidth, another package.
-    """
+
+def library(module: str, cannot: str) -> Any:
+    """A library that reads the logs of others; `cannot` begins the message where it is not installed, such as
+    "a.parquet is not read: Parquet"."""
+    try:
+        return import_module(module)
+    except ImportError:
+        name = module.partition(".")[0]
+        raise needed(f"{cannot} takes {name}, which", "logs") from None
+
+
+def parquet(cannot: str) -> Any:
+    """What reads and writes Parquet."""
+    return library("pyarrow.parquet", f"{cannot}: Parquet")
+
+
+def line(extra: str = "", package: str = "") -> str:
+    """``pip install 'zwidth[extra]'`` as it works here; or of another package, which an index has."""
     return " ".join([_pip(), *map(_typed, [package] if package else _zwidth(extra))])
 
 
@@ -36,8 +52,7 @@ def _zwidth(extra: str) -> list[str]:
     from urllib.parse import urlsplit
     from urllib.request import url2pathname
 
-    named = f"[{extra}]" if extra else ""
-    libraries: list[str] = []
+    named, libraries = f"[{extra}]" if extra else "", list[str]()
     try:
         found = distribution("zwidth")
         libraries = [one.partition(";")[0] for one in found.requires or () if f"extra == '{extra}'" in one]
@@ -60,23 +75,22 @@ def _zwidth(extra: str) -> list[str]:
 
 def _pip() -> str:
     """``pip install`` for the Python that runs, by the shortest name that leads to it."""
-    python = Path(sys.executable or "python")
+    python, virtual = Path(sys.executable or "python"), sys.prefix != sys.base_prefix
     if find_spec("pip") is None and shutil.which("uv"):  # whose environments have none
-        return f"uv pip install --python {_typed(_near(python))}"
+        return f"uv pip install --python {_near(python)}"
+    # outside of a virtual environment several Pythons share a folder, and a pip is that of one of them
     for name, call in (("pip", "pip"), ("python", "python -m pip"), ("python3", "python3 -m pip")):
         found = Path(shutil.which(name) or name)
-        if not found.is_absolute() or not found.parent.samefile(python.parent):
-            continue
-        # outside of a virtual environment several Pythons share a folder, and a pip is that of one of them
-        if sys.prefix != sys.base_prefix if name == "pip" else found.samefile(python):
+        ours = found.is_absolute() and found.parent.samefile(python.parent)
+        if ours and (virtual or (name != "pip" and found.samefile(python))):
             return f"{call} install"
-    beside = shutil.which("pip", path=str(python.parent)) if sys.prefix != sys.base_prefix else None
-    return f"{_typed(_near(Path(beside)))} install" if beside else f"{_typed(_near(python))} -m pip install"
+    beside = shutil.which("pip", path=str(python.parent)) if virtual else None
+    return f"{_near(Path(beside)) if beside else f'{_near(python)} -m pip'} install"
 
 
 def _near(path: Path) -> str:
     """A path from the folder in which it will be typed, where it is below that."""
-    return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)
+    return _typed(str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path))
 
 
 def _typed(word: str) -> str:

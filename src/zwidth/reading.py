@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from zlib import decompressobj
 
 from zwidth.errors import InputError
-from zwidth.libraries import library, parquet
+from zwidth.installing import library, parquet
 from zwidth.showing import printable
 
 if TYPE_CHECKING:

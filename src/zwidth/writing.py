@@ -22,7 +22,7 @@ from types import SimpleNamespace
 from typing import IO
 
 from zwidth.errors import InputError
-from zwidth.libraries import parquet
+from zwidth.installing import parquet
 
 try:
     import fcntl

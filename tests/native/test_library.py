@@ -80,7 +80,7 @@ def test_a_column_is_taken_and_changed_as_it_is() -> None:
     ("is_checkout", "compiler", "told"),
     [
         (True, None, r"as plain Python.*there is no C compiler"),
-        (False, build.compiler(), "with a C compiler"),
+        (False, build.compiler(), "; a C compiler"),
         (True, [sys.executable, "-c", "raise SystemExit('no such thing')"], "no such thing"),
     ],
     ids=["no compiler", "installed", "a compiler that fails"],

@@ -27,7 +27,7 @@ import numpy as np
 from zwidth.data.logs.served import MAGIC, ZSTD, Mcap
 from zwidth.data.logs.table import MOST_COLUMNS, Finding, Table, Values, in_pieces, listed, nearest, readable
 from zwidth.errors import InputError
-from zwidth.libraries import library
+from zwidth.installing import library
 from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion, unpacking
 
 if TYPE_CHECKING:

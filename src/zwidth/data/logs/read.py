@@ -13,7 +13,7 @@ from zwidth.data.logs.log import Log, contents, stated_period
 from zwidth.data.logs.meaning import meaning_of
 from zwidth.data.logs.table import Motion, Table, listed, readable, understood_sheets, with_whole_stamps
 from zwidth.errors import InputError
-from zwidth.libraries import parquet
+from zwidth.installing import parquet
 from zwidth.missing import did_you_mean
 
 

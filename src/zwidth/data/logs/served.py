@@ -20,7 +20,7 @@ import numpy as np
 from zwidth.data.logs.contents import COLUMNS, Head, Part, from_json, head_in, rows_lost
 from zwidth.data.logs.table import PIECE, Finding, Table, Values
 from zwidth.errors import InputError
-from zwidth.libraries import library
+from zwidth.installing import library
 from zwidth.reading import LARGEST_CHUNK, check_chunk, check_expansion, unpacking
 
 MAGIC = b"\x89MCAP0\r\n"

@@ -20,7 +20,7 @@ from zwidth.data.logs.cells import decimal_of, is_nothing, is_number, number, pl
 from zwidth.data.logs.sheets import Sheets, table_of_sheets
 from zwidth.data.logs.table import Table
 from zwidth.errors import InputError
-from zwidth.libraries import library
+from zwidth.installing import library
 from zwidth.reading import check_chunk, check_expansion
 
 MOST_ROWS = 2**20

@@ -20,7 +20,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.libraries import parquet
+from zwidth.installing import parquet
 from zwidth.loop.pair.simulate import ARMS, labelled
 from zwidth.loop.pair.simulate import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import (

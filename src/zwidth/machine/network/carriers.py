@@ -170,9 +170,7 @@ class Zenoh(Channel):
         try:
             zenoh: Any = importlib.import_module("zenoh")
         except ImportError:
-            raise InputError(
-                "Eclipse Zenoh is not installed; take UDP, or type", installing.line("networks")
-            ) from None
+            raise installing.needed("Eclipse Zenoh", "networks", otherwise="take UDP") from None
         config = zenoh.Config()
         config.insert_json5("mode", '"peer"')
         if listen or connect:

@@ -6,7 +6,6 @@ from importlib.util import find_spec
 from typing import Any
 
 from zwidth import installing
-from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.environment import Environment
 
@@ -44,6 +43,4 @@ def need_libraries() -> None:
     """Nothing, if they are."""
     for module, name in (("panel", "Panel"), ("bokeh", "Bokeh")):
         if find_spec(module) is None:
-            raise InputError(
-                f"{name}, which draws the explorer page, is not installed; type", installing.line("explore")
-            )
+            raise installing.needed(f"{name}, which draws the explorer page,", "explore")

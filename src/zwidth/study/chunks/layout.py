@@ -195,10 +195,7 @@ def on_cluster(compute: Compute, ready: Any, places: list[Place], address: str) 
     try:
         import distributed
     except ImportError:
-        raise InputError(
-            "a cluster needs Dask, which is not installed; leave out the address, or type",
-            installing.line("maps"),
-        ) from None
+        raise installing.needed("Dask, which a cluster needs,", "maps", otherwise="give no address") from None
     dask: Any = distributed
     try:
         client: Any = dask.Client(address, timeout=_TIMEOUT)

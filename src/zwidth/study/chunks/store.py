@@ -100,10 +100,8 @@ def _opened(path: Path, layout: Layout) -> Any:
     try:
         import zarr
     except ImportError:
-        raise InputError(
-            f"a {layout.what} on disk needs zarr, which is not installed; leave out the file, or type",
-            installing.line("maps"),
-        ) from None
+        what = f"zarr, which a {layout.what} on disk needs,"
+        raise installing.needed(what, "maps", otherwise="give no file") from None
     with _on_disk(path, layout):
         if path.exists() and any(path.iterdir()):
             return _resumed(zarr, path, layout)

@@ -20,7 +20,7 @@ import xarray as xr
 
 from zwidth import installing
 from zwidth.errors import InputError
-from zwidth.libraries import parquet
+from zwidth.installing import parquet
 from zwidth.missing import did_you_mean
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -139,9 +139,7 @@ def _read_zarr(path: Path) -> tuple[xr.Dataset, str]:
     try:
         import zarr
     except ImportError:
-        raise InputError(
-            f"{path} is read by zarr, which is not installed; type", installing.line("maps")
-        ) from None
+        raise installing.needed(f"zarr, which reads {path},", "maps") from None
     group: Any = zarr.open_group(path, mode="r")
     _refuse_foreign(path, group.attrs.get("format"))
     told = group.attrs.get("told")

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from zwidth.errors import InputError
-from zwidth.libraries import parquet
+from zwidth.installing import parquet
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment

@@ -190,10 +190,8 @@ class ForceDimension(LibraryConnection):
 def _library() -> Any:
     """The package's module of the maker's functions."""
     if importlib.util.find_spec(_PACKAGE) is None:
-        raise InputError(
-            "the package that calls the library of Force Dimension is not installed; type",
-            installing.line(package="forcedimension-core"),
-        )
+        what = "the package that calls the library of Force Dimension"
+        raise installing.needed(what, package="forcedimension-core")
     said = io.StringIO()
     try:
         with redirect_stderr(said):

@@ -42,9 +42,7 @@ def open_port(port: str, baud: int) -> Any:
     try:
         serial: Any = importlib.import_module("serial")
     except ImportError:
-        raise InputError(
-            "pyserial, which opens serial ports, is not installed; type", installing.line("serve")
-        ) from None
+        raise installing.needed("pyserial, which opens serial ports,", "serve") from None
     try:
         opened = serial.Serial(port, baud, timeout=0, write_timeout=0, inter_byte_timeout=0, exclusive=True)
     except (serial.SerialException, ValueError, OSError) as error:

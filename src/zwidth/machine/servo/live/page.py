@@ -117,9 +117,7 @@ def library(module: str, name: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError:
-        raise InputError(
-            f"{name} is not installed; watch in the terminal, or type", installing.line("serve")
-        ) from None
+        raise installing.needed(name, "serve", otherwise="watch in the terminal") from None
 
 
 def bound(port: int) -> tuple[list[Any], int]:
