@@ -387,7 +387,8 @@ def _patches(found: xr.Dataset) -> list[Patch]:
 def _shade(outcome: str) -> str:
     """Its colour; what is passive in a light one, so that it differs in grey too."""
     strong = {"passive": 0.45, "active": 1.0}.get(outcome, 0.7)
-    return to_hex([1 - strong * (1 - part) for part in to_rgb(TOLD[outcome].colour)])
+    red, green, blue = (1 - strong * (1 - part) for part in to_rgb(TOLD[outcome].colour))
+    return to_hex((red, green, blue))
 
 
 def _curve(axes: Axes, found: xr.Dataset, name: str) -> None:
@@ -397,7 +398,14 @@ def _curve(axes: Axes, found: xr.Dataset, name: str) -> None:
     if values.dtype.kind == "U":
         axes.plot(x, values, "o", color=BLUE)
     else:
-        axes.plot(x, np.where(np.isfinite(values), values, np.nan), "-o", ms=3, color=BLUE)
+        axes.plot(
+            x,
+            np.where(np.isfinite(values), values, np.nan),
+            "-o",
+            ms=3,
+            color=BLUE,
+            label=_label(found[name], ""),
+        )
     if "outcome" in found and values.dtype.kind != "U":
         _mark(axes, x, found["outcome"].values)
     if _is_log(x):
