@@ -1,4 +1,4 @@
-"""What is wrong with a picture: room left empty, words cut, laid over each other or over a curve."""
+"""What is wrong with a picture: room left empty, words cut, laid over each other or over a curve, no name."""
 
 from __future__ import annotations
 
@@ -10,10 +10,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Tick
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.spines import Spine
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
+
+from zwidth.show.plots.style import SMALL, WIDEST
 
 LEAST = 0.35
 """Part of an axis that data reach over."""
@@ -27,14 +33,34 @@ COVERED = 0.04
 LINES = 3
 """Of a title."""
 
+GREYS = 0.08
+"""Difference in lightness, from 0 to 1, by which curves are told apart in grey."""
+
+OVER = 2.5
+"""Dots of the canvas by which boxes of words may overlap, as the boxes are larger than the letters."""
+
+GUIDE = 0.8
+"""Lightness from which on a line only leads the eye."""
+
+FILLED, PART_FILLED = 0.7, 0.4
+"""Parts of a picture, and of each quarter of it, across and up."""
+
 
 def faults(figure: Figure) -> list[str]:
     """Each fault on a line; none of a good picture."""
     if not isinstance(figure.canvas, FigureCanvasAgg):
         FigureCanvasAgg(figure)
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     found = [fault for axes in _shown(figure) for fault in _of_axes(axes)]
     return [*found, *_outside(figure), *_overlapping(figure)]
+
+
+def faults_of_ours(figure: Figure) -> list[str]:
+    """The same and more, of the pictures that the package draws."""
+    found = faults(figure)
+    for axes in figure.axes:
+        found += [*_nameless(figure, axes), *_alike(axes)]
+    return [*found, *_texts_over_texts(figure), *_small(figure), *_empty(figure)]
 
 
 def _shown(figure: Figure) -> list[Axes]:
@@ -48,8 +74,7 @@ def _of_axes(axes: Axes) -> Iterator[str]:
         yield f"{name}: data reach over {across:.0%} of its width"
     if up < LEAST:
         yield f"{name}: data reach over {up:.0%} of its height"
-    legend = axes.get_legend()
-    if legend is not None:
+    for legend in _legends(axes.figure):
         under = max((_under(line, legend.get_window_extent()) for line in axes.lines), default=0.0)
         if under > COVERED:
             yield f"{name}: the legend covers {under:.0%} of a curve"
@@ -101,6 +126,8 @@ def _under(line: Any, box: Bbox) -> float:
     points = line.get_transform().transform(line.get_path().vertices)
     if not line.get_visible() or line.get_linestyle() == "None" or len(points) < 2:
         return 0.0
+    if line.get_clip_on():  # what is beyond the axes is not drawn
+        box = Bbox.intersection(box, line.axes.bbox) or Bbox.null()
     fine = np.linspace(0, len(points) - 1, max(400, len(points)))
     x, y = (np.interp(fine, np.arange(len(points)), values) for values in points.T)
     within = (x > box.x0) & (x < box.x1) & (y > box.y0) & (y < box.y1)
@@ -123,7 +150,7 @@ def _overlapping(figure: Figure) -> Iterator[str]:
     room = LOOSE * figure.bbox.width
     headings = [text for text in words(figure) if _is_heading(figure, text)]
     for text in headings:
-        if text.get_text().count("\n") >= LINES:
+        if text is not figure._suptitle and text.get_text().count("\n") >= LINES:
             yield f"more than {LINES} lines: {text.get_text()!r}"
     boxes = [(text.get_text(), text.get_window_extent()) for text in headings]
     boxes += [("a legend", legend.get_window_extent()) for legend in _legends(figure)]
@@ -164,3 +191,126 @@ def _seen(text: Text) -> bool:
 def _name(axes: Axes) -> str:
     title = axes.get_title(loc="left") or axes.get_title() or axes.get_ylabel()
     return f"[{title.splitlines()[0] if title else 'axes'}]"
+
+
+def _nameless(figure: Figure, axes: Axes) -> Iterator[str]:
+    """Of curves, marks and areas that look different all but one have a name, or a text in their colour.
+
+    What is at 0 needs none, nor pale lines that lead the eye.
+    """
+    named = {_look(one) for other in figure.axes for one in _drawn(other) if _is_named(one)}
+    bars = [group for group in axes.containers if isinstance(group, ErrorbarContainer) and _is_named(group)]
+    named |= {_look(one) for group in bars for one in group.get_children() if isinstance(one, Line2D)}
+    named |= {_look(one)[0] for legend in _legends(figure) for one in legend.legend_handles if one}
+    written = {to_hex(text.get_color()) for text in axes.texts}
+    looks = {_look(one): one for one in _drawn(axes) if not _at_zero(one) and not _is_guide(one)}
+    without = [
+        one
+        for look, one in looks.items()
+        if look not in named and look[0] not in named and look[0] not in written
+    ]
+    if len(without) > (0 if len(looks) > len(without) else 1):
+        kinds = ", ".join(str(_look(one)) for one in without)
+        yield f"{_name(axes)}: no name says what is {kinds}"
+
+
+def _drawn(axes: Axes) -> list[Any]:
+    """Lines and areas; of bars the axis tells what they are, and of images the legend or a bar of colours."""
+    if not axes.axison:
+        return []
+    lines = [line for line in axes.lines if len(np.ravel(line.get_xdata()))]
+    areas = [one for one in axes.collections if isinstance(one, PolyCollection)]
+    return [one for one in (*lines, *areas) if one.get_visible()]
+
+
+def _look(one: Any) -> tuple[str, ...]:
+    if isinstance(one, Line2D):
+        return to_hex(one.get_color()), str(one.get_linestyle()), str(one.get_marker())
+    faces = getattr(one, "get_facecolor", lambda: "none")()
+    return (to_hex(np.reshape(faces, (-1, 4))[0][:3]) if np.size(faces) > 3 else "none", "area")
+
+
+def _is_named(one: Any) -> bool:
+    return bool(one.get_label()) and not str(one.get_label()).startswith("_")
+
+
+def _is_guide(one: Any) -> bool:
+    return isinstance(one, Line2D) and _lightness(to_hex(one.get_color())) > GUIDE
+
+
+def _at_zero(one: Any) -> bool:
+    return isinstance(one, Line2D) and any(
+        np.all(np.asarray(values, dtype=float) == 0) and len(np.ravel(values)) == 2
+        for values in (one.get_xdata(), one.get_ydata())
+    )
+
+
+def _alike(axes: Axes) -> Iterator[str]:
+    """Named curves with the same dashes and no marks differ in lightness, for prints in grey."""
+    lines = [line for line in _drawn(axes) if isinstance(line, Line2D) and _is_named(line)]
+    for one, other in combinations(lines, 2):
+        (colour, *dashes), (second, *others) = _look(one), _look(other)
+        apart = abs(_lightness(colour) - _lightness(second))
+        if colour != second and dashes == others and apart < GREYS:
+            yield f"{_name(axes)}: {one.get_label()!r} and {other.get_label()!r} are alike in grey"
+
+
+def _lightness(colour: str) -> float:
+    return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
+
+
+def _texts_over_texts(figure: Figure) -> Iterator[str]:
+    """Any two, numbers along axes with them; turned ones have no box of their own."""
+    texts = [
+        text
+        for text in figure.findobj(Text)
+        if text.get_text().strip() and text.get_visible() and _seen(text) and text.get_rotation() % 90 == 0
+    ]
+    shown = [text for text in texts if _is_drawn(text)]
+    boxes = [text.get_window_extent() for text in shown]
+    for (one, first), (other, second) in combinations(zip(shown, boxes, strict=True), 2):
+        wide = min(first.x1, second.x1) - max(first.x0, second.x0)
+        high = min(first.y1, second.y1) - max(first.y0, second.y0)
+        if wide > OVER and high > OVER:
+            yield f"{one.get_text()!r} lies over {other.get_text()!r}"
+
+
+def _is_drawn(text: Text) -> bool:
+    """Not a number of an axis beyond its end, nor one of an axis without numbers."""
+    for axes in text.figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            for tick in (*axis.majorTicks, *axis.minorTicks):
+                if text in (tick.label1, tick.label2):
+                    low, high = sorted(axis.get_view_interval())
+                    return bool(axes.axison and axes.get_visible() and low <= tick.get_loc() <= high)
+    return text.axes is None or text.axes.axison or text in text.axes.texts
+
+
+def _small(figure: Figure) -> Iterator[str]:
+    """Letters where a page of the docs, 7.2 inches wide, shows the picture."""
+    shrunk = min(1.0, WIDEST / figure.get_figwidth())
+    for size, text in sorted({(t.get_fontsize() * shrunk, t.get_text()) for t in words(figure)}):
+        if size < SMALL - 1e-6:
+            yield f"letters of {size:.3g} points: {text!r}"
+
+
+def _empty(figure: Figure) -> Iterator[str]:
+    """Axes with their numbers, labels and legends, and texts, fill the canvas, and each quarter of it."""
+    grid = np.zeros((100, 100), dtype=bool)
+    boxes = [axes.get_tightbbox(bbox_extra_artists=[]) for axes in figure.axes if axes.get_visible()]
+    boxes += [axes.bbox for axes in figure.axes]
+    boxes += [one.get_window_extent() for one in (*figure.texts, *_legends(figure))]
+    if figure._suptitle is not None:
+        boxes.append(figure._suptitle.get_window_extent())
+    for box in boxes:
+        x, y = (np.clip(np.round(100 * np.array(ends)), 0, 100).astype(int) for ends in (
+            (box.x0 / figure.bbox.width, box.x1 / figure.bbox.width),
+            (box.y0 / figure.bbox.height, box.y1 / figure.bbox.height),
+        ))  # fmt: skip
+        grid[y[0] : y[1], x[0] : x[1]] = True
+    if grid.mean() < FILLED:
+        yield f"filled to {grid.mean():.0%}"
+    for word, quarters in (("across", np.split(grid, 4, axis=1)), ("up", np.split(grid, 4))):
+        for place, quarter in enumerate(quarters):
+            if quarter.mean() < PART_FILLED:
+                yield f"quarter {place + 1} {word} is filled to {quarter.mean():.0%}"

@@ -75,7 +75,7 @@ def curves(frequencies: Sequence[float]) -> dict[str, list[tuple[float, float]]]
 @rc_context(style.LOOK)
 def figure(found: dict[str, list[tuple[float, float]]]) -> Figure:
     """The stiffest wall against the resonance of the motor on its cable."""
-    drawn = style.new_figure(7.4, 4.2)
+    drawn = style.new_figure(height=4.6)
     axes = drawn.add_subplot()
     for name, points in found.items():
         *_, colour, line = CURVES[name]
@@ -86,15 +86,14 @@ def figure(found: dict[str, list[tuple[float, float]]]) -> Figure:
     }
     for words, damping in marks.items():
         axes.axhline(2 * damping / PERIOD, color=style.GREY, linewidth=0.8)
-        axes.text(13, 2 * damping / PERIOD - 5, words, va="top", color=style.GREY, fontsize=8.5)
-    axes.axvline(0.5 / PERIOD, ymax=0.85, color=style.GREY, linewidth=0.8, linestyle=":")
-    axes.text(0.48 / PERIOD, 12, "half the sample rate", color=style.GREY, fontsize=8.5, ha="right")
-    axes.set(xscale="log", xlim=(10, 5000), ylim=(0, 400))
+        axes.text(13, 2 * damping / PERIOD - 5, words, va="top", color=style.GREY, fontsize=style.SMALL)
+    axes.axvline(0.5 / PERIOD, color=style.GREY, linewidth=0.8, linestyle=":")
+    axes.text(0.48 / PERIOD, 12, "half the sample rate", color=style.GREY, fontsize=style.SMALL, ha="right")
+    axes.set(xscale="log", xlim=(10, 5000), ylim=(0, 320))
     ticks = (10, 30, 100, 300, 1000, 3000)
     axes.set_xticks(ticks, map(str, ticks))
-    axes.set_xlabel("the motor swings on its cable at [Hz]")
-    axes.set_ylabel("stiffest passive wall [N/m]")
-    axes.legend(loc="upper left", ncols=2)
+    axes.set_xlabel(style.with_unit("the motor swings on its cable at", "Hz"))
+    axes.set_ylabel(style.with_unit("stiffest passive wall", "N/m"))
+    style.legend(axes)
     style.heading(axes, "Motor 30 g and 0.06 N·s/m, handle 0.09 N·s/m, 1 kHz")
-    drawn.set_layout_engine("constrained")
     return drawn

@@ -75,7 +75,7 @@ def test_what_the_picture_shows(recorded):
     above, middle, below = figure.axes
     labels = [line.get_label() for line in middle.get_lines()[:2]]
     assert labels == ["asked for by the law", "given"]
-    assert "position [mm]" in above.get_ylabel()
+    assert "position x [mm]" in above.get_ylabel()
     assert below.get_lines()[1].get_xdata().size == 1
 
 

@@ -398,7 +398,14 @@ def _curve(axes: Axes, found: xr.Dataset, name: str) -> None:
     if values.dtype.kind == "U":
         axes.plot(x, values, "o", color=BLUE)
     else:
-        axes.plot(x, np.where(np.isfinite(values), values, np.nan), "-o", ms=3, color=BLUE)
+        axes.plot(
+            x,
+            np.where(np.isfinite(values), values, np.nan),
+            "-o",
+            ms=3,
+            color=BLUE,
+            label=_label(found[name], ""),
+        )
     if "outcome" in found and values.dtype.kind != "U":
         _mark(axes, x, found["outcome"].values)
     if _is_log(x):

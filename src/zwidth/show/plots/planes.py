@@ -112,9 +112,9 @@ def place_at_limit(device: Device) -> tuple[float, float]:
 
 
 def ends_around(*values: float) -> tuple[float, float]:
-    """Ends of an axis around ½ and these values."""
-    low, high = min(0.5, *values), max(0.5, *values)
-    return min(low / 6, 0.05), max(high * 8, 5.0)
+    """Ends of an axis around ½ and these values, with a third of it and more on either side of ½."""
+    low, high = min(0.05, *(v / 6 for v in values)), max(5.0, *(v * 8 for v in values))
+    return min(low, 0.5 / (high / 0.5) ** 0.5), max(high, 0.5 * (0.5 / low) ** 0.5)
 
 
 def _regions(axes: Axes, x: tuple[float, float], y: tuple[float, float], above: bool) -> None:
@@ -135,8 +135,9 @@ def _regions(axes: Axes, x: tuple[float, float], y: tuple[float, float], above: 
         "globally\nunstable": (before, bottom) if above else (left, under),
     }
     for name, ((u, du, ha), (v, dv, va)) in places.items():
+        colour = GREEN if "passive" in name else GREY
         axes.annotate(
-            name, (u, v), (du, dv), textcoords="offset points", ha=ha, va=va, fontsize=SMALL, color=GREY
+            name, (u, v), (du, dv), textcoords="offset points", ha=ha, va=va, fontsize=SMALL, color=colour
         )
     axes.set_xlabel("β = b/(K T)   viscous friction against sampling")
     axes.set_ylabel(low_index("σ = f_c/(K Δ)   dry friction against the encoder"))
@@ -157,7 +158,7 @@ def _line(
     ends = (ceil(log10(softest * factor * 1.1)), floor(log10(stiffest * factor / 1.1)) + 1)
     decades = [10.0**n / factor for n in range(*ends)]
     for k in decades:
-        axes.plot([beta / k], [sigma / k], "o", color="white", mec=BLUE, ms=4, zorder=4)
+        axes.plot([beta / k], [sigma / k], "o", color=BLUE, mfc="white", ms=4, zorder=4)
         text = number(k * factor) + (f" {unit}" if k == decades[0] else "")
         axes.annotate(
             text,

@@ -27,7 +27,7 @@ from zwidth.show.plots.style import (
     page_heading,
     with_unit,
 )
-from zwidth.show.plots.traces import ARMS, shade_wall, thinned
+from zwidth.show.plots.traces import ARMS, shade_wall, thinned, timed
 from zwidth.showing import printable
 
 if TYPE_CHECKING:
@@ -62,13 +62,13 @@ def recording_figure(data: xr.Dataset) -> Figure:
     draw_given_force(middle, data)
     draw_recorded_lateness(below, data)
     page_heading(figure, printable(str(data.attrs["title"])))
-    below.set_xlabel(_time(data)[1])
+    below.set_xlabel(timed(data)[1])
     return figure
 
 
 def draw_read_position(axes: Axes, data: xr.Dataset) -> None:
     """The position as it was read; grey lines where a sample had no good answer; the wall is shaded."""
-    time = _time(data)[0]
+    time = timed(data)[0]
     read = data["measured_position"].values
     factor, text = axis([float(np.abs(read).max())], "position", str(data.attrs["motion"]))
     axes.plot(*thinned(time, read * factor), color=BLUE, label="as it was read")
@@ -81,7 +81,7 @@ def draw_read_position(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_given_force(axes: Axes, data: xr.Dataset) -> None:
     """What the law asked for and what was given, both positive out of the wall."""
-    time = _time(data)[0]
+    time = timed(data)[0]
     wished, given = data["wished_force"].values, data["commanded_force"].values
     largest = max(float(np.abs(wished).max()), float(np.abs(given).max()))
     factor, text = axis([largest], "force", str(data.attrs["motion"]))
@@ -97,7 +97,7 @@ def draw_given_force(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_recorded_lateness(axes: Axes, data: xr.Dataset) -> None:
     """How late each sample was; red where samples were missed before it."""
-    time = _time(data)[0]
+    time = timed(data)[0]
     late, passed = data["late"].values, np.diff(data["sample"].values, prepend=data["sample"].values[0] - 1)
     factor, text = axis([float(np.abs(late).max())], "time", text="late by")
     axes.plot(*thinned(time, late * factor), color=BLUE, lw=0.8)
@@ -108,12 +108,6 @@ def draw_recorded_lateness(axes: Axes, data: xr.Dataset) -> None:
     axes.set_ylabel(text)
     if missed.any():
         legend(axes)
-
-
-def _time(data: xr.Dataset) -> tuple[Array, str]:
-    time = data["time"].values
-    factor, text = axis([float(time[-1])], "time")
-    return time * factor, text
 
 
 _LEAST = 1e-8

@@ -28,6 +28,9 @@ _LEAD = 60
 _EXACT = 300
 """Samples up to which arithmetic is exact; beyond, digits grow and time with them."""
 
+_MANY = 10**9
+"""Rounds from which on they are told to four digits."""
+
 _FULL = 20_000
 """Samples of a motion with several repeated parts up to which all of it is played."""
 
@@ -111,7 +114,8 @@ def _unrolled(witness: Witness) -> tuple[list[Fraction], list[Fraction], int, st
         stop = part.first + ROUNDS * (part.last - part.first)
         first = 0 if part.first <= _LEAD else part.first
         y = y[:stop] if y else y
-        return x[: stop + 1], y, first, f"{ROUNDS} of {part.times:,} rounds"
+        times = f"{part.times:,}" if part.times < _MANY else f"{part.times:.4g}"
+        return x[: stop + 1], y, first, f"{ROUNDS} of {times} rounds"
     rounds = motion.rounds if motion.samples <= _FULL else ROUNDS
     x, y = _play(motion, rounds)
     whole = rounds == motion.rounds

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
@@ -13,11 +14,12 @@ from zwidth.errors import InputError
 from zwidth.model.rendering import VirtualCoupling
 from zwidth.model.scene import Scene
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome_evidence import Moves
 from zwidth.passivity.transmission import TransmissionVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.show.plots.cables import draw_circle
 from zwidth.show.plots.linear import draw_criterion, draw_damping, draw_friction, has_friction
-from zwidth.show.plots.motions import draw_motion, draw_witness
+from zwidth.show.plots.motions import draw_motion
 from zwidth.show.plots.planes import draw_plane, has_plane
 from zwidth.show.plots.scene import draw_scene, size_of
 from zwidth.show.plots.storages import draw_storage
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
 
 Draw = Callable[[Figure, SubplotSpec, Any], None]
 
-_HIGH, _LOW = 4.5, 3.5
+_HIGH, _LOW = 4.6, 3.5
 """Of a row of panels with a motion, on three axes, and of another [inch]."""
 
 
@@ -128,12 +130,17 @@ def _budget(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
 
 
 def _witness(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
-    rows = place.subgridspec(3, 1)
-    top = figure.add_subplot(rows[0])
-    others = [figure.add_subplot(rows[k], sharex=top) for k in (1, 2)]
-    for axes in (top, others[0]):
-        axes.tick_params(labelbottom=False)
-    draw_witness([top, *others], verdict)
+    assert verdict.witness is not None
+    _three(place, verdict.witness)
+
+
+def _three(place: SubplotSpec, motion: Moves) -> list[Axes]:
+    """A motion on three axes one above the other, so low that units stand below what they are of."""
+    rows: list[Axes] = place.subgridspec(3, 1).subplots(sharex=True, squeeze=False)[:, 0].tolist()
+    draw_motion(rows, motion)
+    for axes in rows:
+        axes.set_ylabel(axes.get_ylabel().replace(" [", "\n["))
+    return rows
 
 
 def _storage(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
@@ -160,7 +167,7 @@ def limit_figure(bracket: Bracket) -> Figure:
     """
     if bracket.storage is None and bracket.witness is None:
         raise InputError("there is neither a storage function nor a motion to draw")
-    figure = new_figure(height=4.6)
+    figure = new_figure(height=5.0)
     sides = [
         *([_proved] if bracket.storage is not None else []),
         *([_refuted] if bracket.witness is not None else []),
@@ -183,12 +190,7 @@ def _proved(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
 
 def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     assert bracket.witness is not None
-    rows = place.subgridspec(3, 1)
-    top = figure.add_subplot(rows[0])
-    axes = [top, *(figure.add_subplot(rows[k], sharex=top) for k in (1, 2))]
-    for upper in axes[:-1]:
-        upper.tick_params(labelbottom=False)
-    draw_motion(axes, bracket.witness)
+    top, *_ = _three(place, bracket.witness)
     text = f"{_values(bracket)[1]}\n{top.get_title(loc='left')}"
     heading(top, text, color=OUTCOME["active"])
 

@@ -25,6 +25,7 @@ from zwidth.show.plots.style import (
     PURPLE,
     RED,
     SMALL,
+    WIDEST,
     new_figure,
     verbatim,
 )
@@ -54,7 +55,7 @@ def plot_scene(scene: Scene, motion: str = "linear") -> Figure:
 def size_of(scene: Scene) -> tuple[float, float]:
     """Width and height of its drawing [inch]."""
     x, y = zip(*placed(scene).values(), strict=True)
-    return min(14.0, 2.5 + 1.9 * max(x)), min(10.0, 2.6 + 1.6 * (max(y) - min(y)))
+    return min(WIDEST, 2.5 + 1.9 * max(x)), min(10.0, 2.6 + 1.6 * (max(y) - min(y)))
 
 
 def draw_scene(axes: Axes, scene: Scene, motion: str = "linear") -> None:
@@ -145,6 +146,7 @@ def _ends(
         x, y = places[second if first == GROUND else first]
         begin = np.array([x + aside, y - 0.2])
         return begin, np.array([x + aside, y - 0.75]), [_shape((x, y), (x, y - 0.2), (x + aside, y - 0.2))]
+    aside *= 1 if first < second else -1  # from there to here the other side is on the left
     a, b = np.array(places[first]), np.array(places[second])
     across = aside * np.array([a[1] - b[1], b[0] - a[0]]) / max(float(np.hypot(*(b - a))), 1e-9)
     near, far = a + 0.2 * (b - a), b - 0.2 * (b - a)

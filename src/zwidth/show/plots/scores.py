@@ -141,13 +141,10 @@ def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
         drawn = row + 0.3 - np.clip(force, -0.3, 0.95)
         axes.plot((time[shown] - start) * 1e3, drawn, color=OUTCOME[status], lw=1.0)
         if force.size and force.max() > 0.95:
-            axes.annotate(
-                f"{force.max() * newton:.3g} N",
-                (_SHOWN * 1e3, row - 0.1),
-                ha="right",
-                fontsize=SMALL,
-                color=GREY,
-            )
+            beside = (1.04e3 * _SHOWN, row - 0.1)
+            axes.annotate(f"{force.max() * newton:.3g} N", beside, fontsize=SMALL, color=GREY)
+    axes.set_xlim(-10, 1.3e3 * _SHOWN)
+    axes.set_xticks([0, 50, 100])
     axes.set_xlabel(with_unit("time after contact", "ms"))
     axes.annotate(
         f"force under a fast finger;\n{_ROW * newton:.3g} N the median of peaks", (0, 1.0),

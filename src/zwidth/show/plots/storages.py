@@ -133,7 +133,7 @@ def draw_sample_table(axes: Axes, found: SampleTable) -> None:
     low, high = _height(found, values, errors)
     edge = low if found._BEYOND < 0 else high
     axes.axhspan(found._BOUND, edge, color=RED, alpha=0.12, lw=0, label="of no passive system")
-    axes.axhline(found._BOUND, color=BLACK, lw=0.8)
+    axes.axhline(found._BOUND, color=BLACK, lw=0.8, label="the bound")
     _draw_bands(axes, found)
     for these, colour, mark, name in (
         (~possible, BLUE, "o", "no violation shown"),

@@ -73,7 +73,7 @@ LOOK: Any = {
 _BESIDE = 0.7
 """What numbers and label of the upright axis take of the width of its place [inch]."""
 
-_HANDLE = 0.4
+_HANDLE = 0.5
 """What the mark takes of an entry of a legend [inch]."""
 
 _LONGEST = 80

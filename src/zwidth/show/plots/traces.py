@@ -66,7 +66,7 @@ def trace_figure(trace: xr.Dataset) -> Figure:
     draw_forces(middle, trace)
     draw_energies(below, trace)
     page_heading(figure, _title(trace))
-    below.set_xlabel(_time(trace)[1])
+    below.set_xlabel(timed(trace)[1])
     return figure
 
 
@@ -93,7 +93,7 @@ def comparison_figure(traces: Mapping[str, xr.Dataset]) -> Figure:
 
 def draw_position(axes: Axes, trace: xr.Dataset) -> None:
     """Position, what the encoder read, what the muscles wanted; the wall is shaded."""
-    time = _time(trace)[0]
+    time = timed(trace)[0]
     x = trace["position"].values
     factor, text = axis([float(np.abs(x).max())], "position", str(trace.attrs["motion"]))
     wanted = trace["anchor_position"].values if "anchor_position" in trace else x
@@ -123,7 +123,7 @@ def shade_wall(axes: Axes) -> None:
 
 def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
     """The actuator's staircase and the force of the hand."""
-    time = _time(trace)[0]
+    time = timed(trace)[0]
     hand, actuator = trace["hand_force"].values, trace["actuator_force"].values
     largest = max(float(np.abs(hand).max()), float(np.abs(actuator).max()))
     factor, text = axis([largest], "force", str(trace.attrs["motion"]))
@@ -137,7 +137,7 @@ def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
 
 def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
     """What the hand and the actuator put in, and what friction took; below 0 the hand has got out energy."""
-    time = _time(trace)[0]
+    time = timed(trace)[0]
     names = {
         "hand_work": (BLACK, "--", "from the hand"),
         "actuator_work": (PURPLE, "-", "from the actuator"),
@@ -176,7 +176,8 @@ def thinned(x: Array, y: Array) -> tuple[Array, Array]:
     return x[index], y[index]
 
 
-def _time(trace: xr.Dataset) -> tuple[Array, str]:
+def timed(trace: xr.Dataset) -> tuple[Array, str]:
+    """The times of a trace or a recording, and what the axis says."""
     time = trace["time"].values
     factor, text = axis([float(time[-1])], "time")
     return time * factor, text
@@ -216,7 +217,7 @@ def pair_trace_figure(trace: xr.Dataset) -> Figure:
 
 def draw_both(axes: Axes, trace: xr.Dataset, name: str, text: str | None = None) -> None:
     """One variable of both arms."""
-    time = _time(trace)[0]
+    time = timed(trace)[0]
     values = trace[name].values
     quantity = "position" if name == "position" else "force"
     factor, text = axis([float(np.abs(values).max())], quantity, str(trace.attrs["motion"]), text)
@@ -229,7 +230,7 @@ def draw_both(axes: Axes, trace: xr.Dataset, name: str, text: str | None = None)
 
 def draw_pair_energies(axes: Axes, trace: xr.Dataset) -> None:
     """What both hands put in together, where it went; below 0 they have got energy out."""
-    time, book = _time(trace)[0], PairLedger(trace)
+    time, book = timed(trace)[0], PairLedger(trace)
     ratio = np.array([[1.0], [book.power_ratio]])
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
     curves: dict[str, tuple[str, str, Array]] = {
