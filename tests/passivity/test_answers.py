@@ -151,8 +151,8 @@ def test_what_is_no_answer_shows_itself_too() -> None:
         mass=0.04, damping=0.1, coulomb_friction=None, explained=0.9, passes=2, samples=9
     )
     finger = zw.identification.IdentifiedFinger(
-        estimates={"stiffness": Estimate(500.0, 20.0, 5.0, 30, "N/m")}, instrument="position",
-        explained=0.9, pulse_length=0.05, pieces=3, pulses=7, motion="linear", source="press.csv", findings=(),
+        estimates={"stiffness": Estimate(500.0, 20.0, 5.0, 30, "N/m")}, instrument="position", findings=(),
+        explained=0.9, pulse_length=0.05, pieces=3, pulses=7, motion="linear", source="press.csv",
     )  # fmt: skip
     for shown, says in ((plan, "Motor off"), (fit, "damping 0.1"), (finger, "press.csv")):
         assert says in repr(shown)
