@@ -17,6 +17,7 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
+from zwidth.data.identification.device.estimate import Estimate
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.outcome_evidence import Found
@@ -108,6 +109,7 @@ def test_an_answer_says_the_same_everywhere(name: str, tmp_path: Path) -> None:
     told = json.loads(answer.to_json())
     assert isinstance(page(name), Html)
     assert answer.outcome in page(name)
+    assert escape(answer.claim) in page(name)
     assert type(answer).__name__.removeprefix("Linear") in repr(answer)
     assert told["format"].startswith("zwidth ")
     assert told["scope"]["contact"] == answer.scope.contact
@@ -140,6 +142,22 @@ def test_where_there_is_nothing_to_draw_a_notebook_shows_the_claim(name: str) ->
     assert escape(answered(name).claim) in page(name)
     with pytest.raises(zw.InputError, match="no picture of this Bounding"):
         answered("bounding").plot()
+
+
+def test_what_is_no_answer_shows_itself_too() -> None:
+    """What a terminal prints: the protocol of a plan, the numbers of a fit, those of a finger."""
+    plan = zw.plan(PADDLE, force_noise="10 mN")
+    fit = zw.identification.PublishedFit(
+        mass=0.04, damping=0.1, coulomb_friction=None, explained=0.9, passes=2, samples=9
+    )
+    finger = zw.identification.IdentifiedFinger(
+        estimates={"stiffness": Estimate(500.0, 20.0, 5.0, 30, "N/m")}, instrument="position", findings=(),
+        explained=0.9, pulse_length=0.05, pieces=3, pulses=7, motion="linear", source="press.csv",
+    )  # fmt: skip
+    for shown, says in ((plan, "Motor off"), (fit, "damping 0.1"), (finger, "press.csv")):
+        assert says in repr(shown)
+        assert escape(says) in shown._repr_html_()
+        assert isinstance(shown._repr_html_(), Html)
 
 
 def test_a_notebook_shows_what_to_change() -> None:

@@ -150,8 +150,8 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: RealLi
     t, x = samples(time, position, "position")
     _, f = samples(time, force, "force")
     other = "position" if response == "force" else "force"
-    rested = None if rest is None else float(read_number(rest, other, "rest"))
-    if not np.ptp(x) and not (rested is not None and x[0] != rested) and response == "force":
+    before = None if rest is None else float(read_number(rest, other, "rest"))
+    if not np.ptp(x) and not (before is not None and x[0] != before) and response == "force":
         raise InputError(
             "the position never changes, so it says nothing: give a record of motion, or for a relaxation "
             "test the position before its step as rest=0"
@@ -162,7 +162,7 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: RealLi
             f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the force "
             "changes: how the tissue crept meanwhile is not known; give the part before it or after it"
         )
-    return Record(t, x, f, response, rested, begins)
+    return Record(t, x, f, response, before, begins)
 
 
 def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
