@@ -128,8 +128,42 @@ def test_little_effort(name, effort):
 
 
 def test_no_effort_with_a_law_without_a_transfer_function():
-    """A spring given by points as well: nothing decided is an answer."""
-    assert passive_limit(*DETENT, "gain", **BOUNDS, effort=0).proved_passive is None
+    """One that no closed form decides: nothing decided is an answer."""
+    assert passive_limit(*CONTACT, "stiffness", **BOUNDS, effort=0).proved_passive is None
+
+
+CLOSED = {
+    "stiffness": {
+        "spring": zw.Wall(200),
+        "damped": zw.Wall(150, "0.1"),
+        "clamped": zw.Wall(150, "0.1", clamped=True),
+        "solid": zw.StandardLinearSolid(100, 100, 1),
+        "window": zw.Wall(100, "0.05", zw.rendering.Window(4)),
+        "behind a force bounding": zw.render(zw.Wall(100), zw.rendering.ForceBounding()),
+    },
+    "gain": {
+        "detents": zw.NonlinearSpring.detents(4, "0.004", "0.2"),
+        "stop": zw.NonlinearSpring([0, "0.01", "0.02"], [0, 1, 4]),
+        "pulling in its middle": zw.NonlinearSpring(["-0.01", 0, "0.01", "0.02"], [-1, 1, "-0.2", 1]),
+    },
+}
+
+
+@pytest.mark.parametrize("delay", ["0", "0.3", "1"])
+@pytest.mark.parametrize(
+    ("parameter", "name"), [(key, name) for key, laws in CLOSED.items() for name in laws]
+)
+def test_what_check_proves_in_closed_form_is_on_the_proved_side(parameter, name, delay):
+    """Whatever law and delay, without work to speak of; and the other side is no nearer."""
+    loop, law = device("0.6", "0.03", delay), CLOSED[parameter][name]
+    if zw.check(loop, law, iterate=False).outcome != "passive":
+        return
+    bracket = passive_limit(loop, law, parameter, effort=0.01)
+    now = 1.0 if parameter == "gain" else float(law.met.stiffness)
+    assert bracket.every_hand[0] >= now
+    assert bracket.proved_passive >= now
+    assert bracket.certificate.verify()
+    assert bracket.proved_active is None or bracket.proved_active > now
 
 
 GROWING = {

@@ -26,7 +26,7 @@ from zwidth.passivity.storage.hand_bounds import bounds_given, slow_hands
 from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction
 from zwidth.passivity.storage.value_iteration import EFFORT, Effort, Until, checked_effort, time_limit
-from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.exact import Exact, RealLike
 
 _SOME_SECONDS = 10.0  # what needs no announcement
 
@@ -111,27 +111,35 @@ def passive_limit(
     of = as_contact(contact)
     if not iterate or of == "kept" or device.transmission is not None:  # of these closed forms alone know
         return _by_closed_forms(Search(asked, tolerance, Effort(), inf, progress), counted, of)
-    ideal = ends(device.resolution)[1] == 0
     in_a_chain = bool(laws_of(law))
-    if not (ideal or in_a_chain or is_stepped(law)):
-        program_of(device, law, *counted)  # what cannot be iterated is refused before anything is searched
+    built: Callable[..., DynamicProgram | ChainProgram] = chain_program if in_a_chain else program_of
+    closed = not (force_limit or force_resolution or friction is not None)
+    every_hand = closed and penetration is None and speed is None
+    no_grid: InputError | None = None
+    if not is_stepped(law):
+        try:
+            at_first = built(device, law, *counted)
+        except InputError as error:  # refused before anything is searched, unless closed forms may know
+            if not every_hand:
+                raise
+            no_grid = error
     search = Search(asked, tolerance, Effort(time_limit(seconds)), most, progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
-    closed = not (force_limit or force_resolution or friction is not None)
-    every = (search.by_closed_forms() if closed else None) or NOTHING
+    every = search.by_closed_forms() if closed else NOTHING
     known = every.passive, every.active
-    settled = ideal and known != (None, None)  # no grid narrows an ideal encoder's
-    if penetration is None and speed is None and (settled or search.is_close(*known)):
+    settled = (no_grid is not None or is_stepped(law)) and known != (None, None)  # nothing narrows it
+    if every_hand and (settled or search.is_close(*known)):
         return search.bracket(every, known)
+    if no_grid is not None:
+        raise no_grid
     if is_stepped(law):
         raise InputError(
             "a scene that is not linear, or of many elements, is decided for every hand, behind a virtual "
             "coupling, and read without encoder steps: give it one, the device resolution=0, and no bounds"
         )
-    built: Callable[..., DynamicProgram | ChainProgram] = program_of
-    if in_a_chain:  # one grid for all values: that on which the laws close as they are given
-        built = partial(chain_program, domains=(chain_program(device, law, *counted).counts,))
+    if isinstance(at_first, ChainProgram):  # one grid for all values: where the laws close as they are given
+        built = partial(chain_program, domains=(at_first.counts,))
 
     def program(value: Exact) -> DynamicProgram | ChainProgram:
         return built(*asked.change(value), *counted)
@@ -154,7 +162,7 @@ def _by_closed_forms(search: Search, counted: tuple[Any, ...], contact: Contact)
             "iteration alone, which knows no contact that is kept and no transmission: leave them out, or "
             "iterate"
         )
-    every = search.by_closed_forms(every_law=True, contact=contact) or NOTHING
+    every = search.by_closed_forms(contact)
     return search.bracket(every, (every.passive, every.active))
 
 

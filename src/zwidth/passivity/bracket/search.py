@@ -11,7 +11,7 @@ from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.bracket.bracket import Bracket, Parameter
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.check import check, check_by_closed_forms
+from zwidth.passivity.check import check
 from zwidth.passivity.scope import Contact, Scope
 from zwidth.passivity.storage.chain_document import ChainStorage
 from zwidth.passivity.storage.gain import Gain
@@ -71,25 +71,16 @@ class Search:
         """Whether a value is proved for a hand that stays inside, and for no other."""
         self.first = Exact(parameter.now or 1.0)
 
-    def by_closed_forms(self, every_law: bool = False, contact: Contact = MADE) -> Found | None:
-        """What certificates and motions show of every hand; None for a law that has none.
-
-        With `every_law` those without H(z) are looked at too.
-        """
+    def by_closed_forms(self, contact: Contact = MADE) -> Found:
+        """What the closed forms of `check` show of every hand."""
         verdicts: dict[Exact, Any] = {}
         kept = contact == "kept"
 
         def verdict(value: Exact) -> Any:
             if value not in verdicts:
                 self.count()
-                device, law = self.parameter.change(value)
-                closed = every_law or is_stepped(law) or device.transmission is not None
                 try:
-                    verdicts[value] = (
-                        check(device, law, contact=contact, iterate=False)
-                        if closed
-                        else check_by_closed_forms(device, law, contact=contact)
-                    )
+                    verdicts[value] = check(*self.parameter.change(value), contact=contact, iterate=False)
                 except InputError as error:  # a delay of more samples than a proof has room for
                     if value == self.first:
                         raise
@@ -106,10 +97,6 @@ class Search:
             broken = kept and getattr(found, "scope", NOTHING.scope).contact == MADE
             return getattr(found, "outcome", "") == "active" and not broken
 
-        try:
-            verdict(self.first)
-        except InputError:  # a law without H(z), which only value iteration can decide
-            return None
         least = self.parameter.least
         every = least is not None and self.parameter.proves_more(verdict(least))
         if every or (least == 0 and proved(least, inf) and proved(self.first, inf)):
