@@ -117,7 +117,7 @@ def test_force_bounding_withstands_on_other_devices():
 
 @pytest.mark.parametrize("fastest", [0, -1, 1e-6, float("inf"), float("nan")])
 def test_a_speed_that_no_hand_has(fastest):
-    with pytest.raises(zw.InputError, match="fastest is the speed of a hand"):
+    with pytest.raises(zw.InputError, match=r"fastest is (the speed of a hand|in m/s: expected a finite)"):
         attack(PADDLE, zw.Wall(300), fastest=fastest)
-    with pytest.raises(zw.InputError, match="fastest is the speed of a hand"):
+    with pytest.raises(zw.InputError, match=r"fastest is (the speed of a hand|in m/s: expected a finite)"):
         zw.compare(PADDLE, zw.Wall(300), {"wall": zw.Wall(300)}, fastest=fastest)

@@ -74,10 +74,8 @@ def count_of(device: Device, fastest: RealLike) -> Fraction:
 def as_speed(device: Device, fastest: RealLike) -> Fraction:
     """The speed of the fastest hand [m/s]."""
     least = 2.5 * EDGE * float(device.exact("resolution") / device.exact("sample_period"))
-    speed: Exact = read_number(
-        fastest, "speed", "fastest", bound="> 0", why="a hand at rest takes nothing out"
-    )
-    if speed < least:
+    speed: Exact = read_number(fastest, "speed", "fastest")
+    if speed <= 0 or speed < least:
         raise InputError(
             f"fastest is the speed of a hand [m/s], finite and at least {least:.3g} to cross an edge of the "
             f"encoder and come back, got {fastest}: a hand reaches about 1 m/s"
