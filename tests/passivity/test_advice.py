@@ -336,3 +336,18 @@ def test_where_no_condition_is_known_nothing_is_advised() -> None:
     """Of a spring that pulls away for ever."""
     pulling = zw.NonlinearSpring(positions=[0, "0.01"], forces=[0, -3])
     assert zw.check(LIGHT, pulling).advice == ()
+
+
+@pytest.mark.parametrize(("contact", "at_most"), [("made and broken", 0.0), ("kept", 0.0751)])
+def test_where_the_corners_do_not_decide_the_change_is_one_that_holds_between_them(
+    contact: str, at_most: float
+) -> None:
+    """A delay within 0 … 0.25 ms behind B = 0.5: what the corners bear is not proved between them, a little
+    less is of a hand that stays inside, and of any hand the bare spring."""
+    wide = PADDLE.replace(coulomb_friction="0.1", delay=Interval("0", "0.00025"))
+    verdict = zw.check(wide, zw.Wall(150, "0.5"), contact=contact)
+    assert (verdict.outcome, verdict.environment.damping) == ("undecided", Exact("0.5"))
+    (less,) = [one for one in verdict.advice if one.parameter == "virtual_damping"]
+    assert isinstance(less.to, float)
+    assert at_most * 0.99 <= less.to <= at_most
+    assert zw.check(wide, zw.Wall(150, less.to), contact=contact).outcome == "passive"

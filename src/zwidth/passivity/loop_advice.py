@@ -153,6 +153,14 @@ class Asked:
             return True
         return self.covers(turned(self.box, advice.parameter, Exact(advice.to).fraction))
 
+    def throughout(self, knob: Knob) -> Knob:
+        """The same, to be turned until every value between the ends of intervals is proved."""
+
+        def holds(size: Fraction) -> bool:
+            return knob.holds(size) and self.covers(turned(self.box, knob.parameter, size, knob.sign))
+
+        return replace(knob, holds=holds, likely=lambda: None)
+
     def covers(self, loop: Loop) -> bool:
         """Whether the checker finds it proved for all values of a loop that is provable at its corners."""
         if self.at == self.box:
@@ -185,7 +193,11 @@ def _advised(asked: Asked, passive: bool, hands: str, stiffest: Guess) -> Iterat
     knobs = (replace(knob, hands=hands) for knob in asked.knobs(stiffest))
     if is_high:  # to find where a limit is likely takes as long as to find it
         knobs = (replace(knob, likely=lambda: None) for knob in knobs)
-    yield from filter(asked.is_confirmed, turn_all(knobs, device.motion, kind, grain))
+    for knob in knobs:
+        turns = turn_all([knob], device.motion, kind, grain)
+        if not (passive or all(map(asked.is_confirmed, turns))):  # proved at the corners, and not between
+            turns = turn_all([asked.throughout(knob)], device.motion, kind, COARSER)
+        yield from filter(asked.is_confirmed, turns)
     wall = wall_of(law)
     if not passive and wall is not None and wall.damping != 0:
         yield from _estimators(asked, wall, hands, grain)
