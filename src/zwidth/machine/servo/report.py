@@ -87,7 +87,7 @@ class ServoReport(Served):
         "has always put in so much at least, but for what the handle had in its motion",
         key="hand_put_in_at_least",
         unit="J",
-        row="least that the hand had put in, as the encoder saw it",
+        row="the hand had put in, at its lowest moment, at least",
     )
     met_hardware: bool = answered("False where only an emulator of this device was met", only_shown=True)
     recorded: Recorded | None = answered("what became of the recording", default=None)
