@@ -64,11 +64,12 @@ def run(capsys, tmp_path, monkeypatch):
 
 @pytest.fixture
 def refused(run):
-    """Runs a line that cannot be used: status 2, and nothing but one message, which is returned."""
+    """Runs a line that cannot be used: status 2, and nothing but one message, which is returned; a command to
+    type stands on a line of its own below it."""
 
     def runner(line: str) -> str:
         _, out, err = run(line, 2)
-        assert (out, err[:8], err.count("\n")) == ("", "zwidth: ", 1), err
+        assert (out, err[:8], err.count("\n")) == ("", "zwidth: ", 2 if "; type\n" in err else 1), err
         return err
 
     return runner

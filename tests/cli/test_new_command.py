@@ -389,14 +389,15 @@ def test_what_to_type_next_can_be_typed(run, make):
     ("known", "damping", "stiffness"),
     [
         ({"--motion": "linear"}, "0.1 N*s/m", "100 N/m"),
-        ({"--motion": "rotary"}, "0.01 N*m*s/rad", "0.1 N*m/deg"),
-        ({"--motion": "rotary", "--handle-radius": "10 cm"}, "0.01 N*m*s/rad", "100 N/m"),
+        ({"--motion": "rotary"}, "0.0001 N*m*s/rad", "0.1 N*m/deg"),
+        ({"--motion": "rotary", "--handle-radius": "10 cm"}, "0.0001 N*m*s/rad", "100 N/m"),
     ],
 )
 def test_a_guess_has_its_unit(run, make, known, damping, stiffness):
     """Of a handle on a lever the damping is that of its shaft, and a wall is met by the handle."""
     out = make({**known, "--rate": "1 kHz", "--damping": "unknown"})
     line = next(line.strip() for line in out.splitlines() if "zwidth check" in line).removeprefix("zwidth ")
+    assert ("of a knob (a wheel has 0.02)" in out) == ("0.0001" in damping)
     assert shlex.split(line)[2:] == ["--damping", damping, "--stiffness", stiffness]
     assert run(line, None).status in (0, 1)
 

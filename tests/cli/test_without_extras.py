@@ -122,7 +122,8 @@ def test_a_file_of_others_says_what_to_type(command, name, refused, plain, tmp_p
     plain()
     said = refused(f"{command} {name}")
     assert f"{name} is not read: " in said
-    assert f"takes {KINDS[name]}, which is not installed: {line('logs')}" in said
+    assert f"takes {KINDS[name]}, which is not installed; type" in said
+    assert line("logs") in said
 
 
 @pytest.mark.parametrize(

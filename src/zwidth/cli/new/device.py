@@ -76,7 +76,9 @@ def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str
     missing = [key for key in NEEDED if key in unknown]
     if missing:
         tried = f"{name} {guessed(missing, motion)} {_GUESSES['stiffness'][at_handle]}"
-        first = [*(line for key in missing for line in _MEASURE[key]), "to try what if, with a guess:"]
+        turned = motion == "rotary" and "damping" in missing
+        guess = "the damping of a knob (a wheel has 0.02)" if turned else "a guess"
+        first = [*(line for key in missing for line in _MEASURE[key]), f"to try what if, with {guess}:"]
     else:
         device = build_device(tables_of(text, path.name, ("device",))["device"])
         tried, first = f"{name} {_stiffness(device)}", ["next, a wall:"]
@@ -98,7 +100,7 @@ def guessed(missing: Iterable[str], motion: str) -> str:
 
 _GUESSES = {
     "stiffness": {"linear": '--stiffness "100 N/m"', "rotary": '--stiffness "0.1 N*m/deg"'},
-    "damping": {"linear": '--damping "0.1 N*s/m"', "rotary": '--damping "0.01 N*m*s/rad"'},
+    "damping": {"linear": '--damping "0.1 N*s/m"', "rotary": '--damping "0.0001 N*m*s/rad"'},
 }
 _MEASURE = {
     "rate": ("measure the rate of your loop; what this machine can keep says", "  zwidth doctor"),

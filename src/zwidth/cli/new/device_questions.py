@@ -128,7 +128,7 @@ def inertia(motion: str) -> Question:
 
 def loop(motion: str) -> tuple[Question, ...]:
     """How often, how late, and what friction pays for it."""
-    unit = "N*m*s/rad" if motion == "rotary" else "N*s/m"
+    such = "0.0001 N*m*s/rad of a knob, 0.02 of a wheel" if motion == "rotary" else "0.1 N*s/m"
     return (
         _question(
             motion,
@@ -147,7 +147,7 @@ def loop(motion: str) -> tuple[Question, ...]:
         _question(
             motion,
             "damping",
-            f"Viscous friction of the device, measured? such as 0.1 {unit}",
+            f"Viscous friction of the device, measured? such as {such}",
             "It pays for the wall: without delay a spring may be as stiff as 2 b/T.",
             "Nothing is proved without it: zwidth identify finds it in a log of the device moved by hand.",
         ),

@@ -124,16 +124,19 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
     keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
     words = given(arguments, keys)
     touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
-    duration = touch.duration
+    duration, remarks = touch.duration, [made_for_a_handle(touch.operator, loop.device)]
     if duration is None:
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
+    if duration is None:
+        duration = _USUAL
+        remarks.append(f"{_USUAL:g} s of it, since no --duration is given")
     trace = with_bar(simulated, "samples")(
         loop.device, environment, touch.operator, duration, **touch.options
     )
     return (
         trace,
         never_reached(trace, environment.met, loop.device.motion),
-        made_for_a_handle(touch.operator, loop.device),
+        "; ".join(filter(None, remarks)),
     )
 
 
@@ -178,13 +181,17 @@ def _surface(met: Environment) -> float | None:
     return 0.0 if met.unilateral and not isinstance(met, NonlinearSpring) else None
 
 
-def own_duration(operator: Any, period: float) -> float:
-    """How long a record or a witness lasts [s]."""
+_USUAL = 2.0
+"""How long a hand is simulated that has no time of its own [s]."""
+
+
+def own_duration(operator: Any, period: float) -> float | None:
+    """How long a record or a witness lasts [s]; None of other hands."""
     if hasattr(operator, "newtons"):
         return len(operator.newtons) * period
     if hasattr(operator, "intervals"):
         return (operator.intervals + 1) * period  # type: ignore[no-any-return]  # and comes to rest
-    raise InputError("no duration is given: set --duration, for example --duration '2 s'")
+    return None
 
 
 def summary(trace: AnyTrace) -> dict[str, Any]:

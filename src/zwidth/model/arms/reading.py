@@ -52,7 +52,7 @@ def read_arm(
     path
         The file, .urdf, .xml or .mjcf. Meshes are not read.
     frame
-        The frame at whose origin the hand is; None: the last one.
+        The frame at whose origin the hand is; None: the last one of an arm that does not branch.
     hold
         Joints that stay at a value [rad; m], by name; the map moves two joints at most.
         None: of more than two joints, all but the first two are held in the middle of their ranges.
@@ -91,7 +91,7 @@ def read_arm(
     limits = tuple(c.effort for c in each) if torque_limit is None else tuple(_for_each(torque_limit, m))
     given: dict[str, Any] = {
         "model": model,
-        "frame": frame or frames[-1],
+        "frame": frame or _last_frame(model, path.name),
         "joint_range": _ranges(each, names, {} if whole and hold is None else hold, whole),
         "damping": b,
         "coulomb_friction": (
@@ -109,6 +109,19 @@ def read_arm(
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
+
+
+def _last_frame(model: Mechanism, name: str) -> str:
+    """Of the only joint that bears no other: between several ends nothing is chosen."""
+    ends = set(range(len(model.joints))) - {joint.before for joint in model.joints}
+    borne = {end: [frame for frame in model.frames if frame.joint == end] for end in sorted(ends)}
+    if len(borne) > 1:
+        raise InputError(
+            f"{name} branches, and ends at {', '.join(each[-1].name for each in borne.values())}: at which "
+            "frame is the hand? Say it with frame=…, on the command line --frame NAME; a link before the "
+            "branches will do, too"
+        )
+    return borne[ends.pop()][-1].name
 
 
 def read_mechanism(path: Path) -> Mechanism:
