@@ -139,6 +139,7 @@ class LinkPicture:
             fill_color=GREEN, fill_alpha=0.3, line_color=None,
         )  # fmt: skip
         self.figure.scatter("delay", "stiffness", source=self._here, size=12, color=RED)
+        self.clear()
 
     def show(self, found: tuple[list[float], list[float]], verdict: PairVerdict) -> str:
         """Draw it; a sentence about what is seen."""

@@ -286,6 +286,7 @@ class RegionPicture:
             legend_label="this wall",
         )
         legend_above(self.figure, columns=1)
+        self.clear()
 
     def show(self, region: Region, damping: float, stiffness: float, motion: str) -> str:
         """Draw it; a sentence about what is seen."""
