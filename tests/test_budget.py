@@ -17,27 +17,27 @@ SOURCE = Path(zw.__file__).parent
 FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}")]
 
 LINES = {
-    "beside the rooms": 940,
-    "checker": 10418,
-    "cli": 10648,
-    "data": 22734,
-    "links": 2339,
-    "loop": 7019,
-    "machine": 17628,
-    "model": 17670,
+    "beside the rooms": 1068,
+    "checker": 10420,
+    "cli": 10636,
+    "data": 22848,
+    "links": 2349,
+    "loop": 7022,
+    "machine": 17658,
+    "model": 17746,
     "native": 1658,
-    "passivity": 28041,
-    "quantity": 2062,
-    "show": 9010,
-    "study": 5651,
+    "passivity": 28241,
+    "quantity": 2015,
+    "show": 9274,
+    "study": 5665,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 135818
-PHYSICS = 65210
+IN_ALL = 136600
+PHYSICS = 65444
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 669, 25
+FILES_IN_ALL, IN_A_FOLDER = 670, 25
 
 ALONE = 135
 """Files that one other file alone imports."""

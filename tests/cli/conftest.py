@@ -69,7 +69,7 @@ def refused(run):
 
     def runner(line: str) -> str:
         _, out, err = run(line, 2)
-        assert (out, err[:8], err.count("\n")) == ("", "zwidth: ", 2 if "; type\n" in err else 1), err
+        assert (out, err[:8], err.count("\n")) == ("", "zwidth: ", 2 if "type:\n" in err else 1), err
         return err
 
     return runner
