@@ -14,6 +14,7 @@ from zwidth.model.specification.read import Specification
         "simulate --operator typical --duration '0.2 s'",
         "compare --laws half-sample-prediction",
         "play -o page.html --no-browser",
+        "map --stiffness 0:400 --virtual-damping 0:0.1 --cells 3x2 --hands none --json",
     ],
 )
 def test_a_delay_of_which_the_ends_are_known(line, run):

@@ -12,6 +12,7 @@ from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
+    from zwidth.model.device import Device
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table
     from zwidth.passivity.stability import Stability
@@ -58,21 +59,26 @@ _WORST = {
 
 def of_one_value(loop: Specification) -> Specification:
     """The loop with single values in the place of intervals, and a line to people about it."""
+    device = at_worst_ends(loop.device)
+    return loop if device is loop.device else replace(loop, device=device)
+
+
+def at_worst_ends(device: Device) -> Device:
+    """The same of a device alone."""
     from zwidth.cli.output import print_message
     from zwidth.quantity.exact import Exact, Interval, ends
     from zwidth.quantity.text import in_words, shown
 
-    device = loop.device
     taken = {
         key: Exact(ends(given)[_WORST[key]])
         for key, given in device.parameters().items()
         if key in _WORST and isinstance(given, Interval)
     }
     if not taken:
-        return loop
+        return device
     told = ", ".join(f"{in_words(key)} {shown(value, device.unit(key))}" for key, value in taken.items())
     print_message(f"of an interval the worst end is taken, for one value is needed: {told}")
-    return replace(loop, device=device.replace(**taken))
+    return device.replace(**taken)
 
 
 def exit_status(outcome: str) -> int:

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.decision import NAMES, named_hands
+from zwidth.cli.decision import NAMES, at_worst_ends, named_hands
 from zwidth.cli.options import DEVICE, FORCE, PLOT, device_parameters, given
 from zwidth.cli.output import print_found, print_message, targets
 from zwidth.errors import InputError
@@ -105,7 +105,7 @@ def _device(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Devic
             "--damping is the friction of the device itself, one value; the range of the wall's damping is "
             "--virtual-damping LOW:HIGH"
         )
-    return specified_device(tables, overrides)
+    return at_worst_ends(specified_device(tables, overrides))
 
 
 def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:

@@ -148,7 +148,8 @@ def request(
     """Read what `z_width` is given."""
     if not device.is_certain:
         raise InputError(
-            "a map is of one device, and a parameter of this one is an interval; choose a value in it"
+            "a map is of one device, and a parameter of this one is an interval: choose a value in it, such "
+            "as device.replace(delay=0.00025), the worst of a delay from 0 to 0.25 ms"
         )
     usual = standard_hands(device.motion) if device.transmission is None else {}
     named = usual if hands is None else dict(hands)
