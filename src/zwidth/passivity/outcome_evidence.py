@@ -15,7 +15,7 @@ from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
-from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.violation import Violation, within_force
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import (
     UNWRITTEN,
@@ -26,7 +26,7 @@ from zwidth.passivity.wording import (
     lines,
 )
 from zwidth.quantity.answered import known
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parametric, parameters_of
 from zwidth.quantity.text import in_words, shown, shown_at_least
@@ -101,10 +101,14 @@ class Found(PassivityAnswer):
         """The motion that takes energy out, made when it is first asked for.
 
         None where the loop is not active, or no motion that was found is short enough to be written down.
+        Where it asks for more than the force limit of the device, one that does not is tried first.
         """
         if self.motion is not None or self.violation is None:
             return self.motion
-        return self.violation.witness
+        found, limit = self.violation.witness, self.device.force_limit
+        if limit is None or not isinstance(found, Witness) or found.peak_force <= (most := ends(limit)[0]):
+            return found
+        return within_force(found.setting, most) or found
 
 
 def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:

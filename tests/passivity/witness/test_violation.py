@@ -281,3 +281,26 @@ def test_a_clear_violation_is_shown_by_a_short_motion(name, delay):
     x = witness.motion.positions
     assert x[0] == x[-1] == 0
     assert min(x[1:-1]) > 0
+
+
+@pytest.mark.parametrize("delay", ["0", "0.0003", "0.001", "0.004"])
+@pytest.mark.parametrize("law", [zw.Wall(2000), zw.Wall(2000, "0.2")])
+def test_a_motion_within_the_force_limit_where_there_is_one(delay, law):
+    """The longer the delay the less force a motion needs; what is shown is checked, and simulated with the
+    limit as without it."""
+    loop = zw.Device(damping="0.1", coulomb_friction="0.2", resolution="0.0001", rate=1000, delay=delay)
+    limited = loop.replace(mass=1, force_limit=20)
+    verdict = check_by_closed_forms(limited, law)
+    free = check_by_closed_forms(loop, law).witness
+    assert verdict.witness.verify()
+    if free.peak_force <= 20:
+        assert verdict.witness == free
+    elif delay != "0":
+        assert verdict.witness.peak_force <= 20
+        assert "stays within the actuator's 20 N" in verdict.demand[0]
+    if verdict.is_beyond_actuator:
+        return
+    hand = zw.operators.WitnessMotion(verdict.witness.motion)
+    duration = (hand.intervals + 1) * limited.exact("sample_period")
+    trace = zw.simulate(limited, law, hand, duration)
+    assert -float(trace.hand_work[-1]) == pytest.approx(verdict.witness.energy, rel=1e-9)

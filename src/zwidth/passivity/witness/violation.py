@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import chain
-from math import ceil
+from itertools import chain, pairwise
+from math import ceil, floor
 from typing import Any
 
 from zwidth.passivity.linear.criterion import LinearRefutation, frequency, offset_of
@@ -101,6 +101,9 @@ class Violation(Evidence):
 _AMPLITUDE = Fraction(1, 1000)  # penetration of a witness that friction does not force to be larger [m; rad]
 _FEW_ROUNDS = 1000
 
+_WAYS = (1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 26, 34, 44)
+"""Moves of the way in, and of the way out, of a motion that is to stay below a force."""
+
 _SHORT = 200  # samples up to which a motion is preferred that does not return the law to its state
 _MOST_ROUNDED = 2500  # samples up to which a motion off the law's whole numbers is recomputed exactly
 
@@ -133,6 +136,32 @@ def _refute_criterion(setting: Setting) -> Witness | None:
 
 def _oscillating(setting: Setting, longest: int) -> Witness | None:
     return _first(_from_positions(setting, one) for one in oscillations(setting.loop, longest))
+
+
+def within_force(setting: Setting, limit: Fraction) -> Witness | None:
+    """In, still, and out, so deep that the force just stays below a limit [N; N·m]; None if none gains.
+
+    Of those tried the one that takes out most: behind a delay the way in meets the force of before, the way
+    out the whole one.
+    """
+    late = setting.loop.whole_delay + (setting.loop.part_delay > 0)
+    shapes = ((ways, still) for ways in _WAYS for still in sorted({1, late, late + 1, 2 * late + 1}))
+    tried = (setting.witness(_pressed(setting, limit, *shape)) for shape in shapes)
+    found = [witness for witness in tried if witness is not None and witness.peak_force <= limit]
+    return max(found, key=lambda witness: witness.exact_energy, default=None)
+
+
+def _pressed(setting: Setting, limit: Fraction, ways: int, still: int) -> Motion:
+    """In and out in so many equal moves, and so many samples still between, on whole counts."""
+    way = [Fraction(k, ways) for k in range(ways + 1)]
+    shape = (*way, *[way[-1]] * still, *way[-2::-1])
+    peak, count = Fraction(setting.peak_force(shape)), setting.resolution
+    depth = limit * Fraction(999, 1000) / peak if peak else _AMPLITUDE
+    unit = count or round_up(depth) / 10**6
+    inside = [unit * floor(depth * v / unit) + count / 8 for v in shape[1:-1]]
+    x = (Fraction(0), *inside, Fraction(0))
+    part = setting.loop.part_delay
+    return Motion(x, tuple(a + part * (b - a) for a, b in pairwise(x)) if part else ())
 
 
 def refute_friction(setting: Setting) -> Witness | None:
