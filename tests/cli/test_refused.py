@@ -17,6 +17,7 @@ REFUSED = {
         "check haptic-paddle --kd 3": "no option --kd; did you mean --virtual-damping?",
         "check haptic-paddle -b 3": "did you mean --damping or --virtual-damping?",
         "check haptic-paddle --friction 3": "did you mean --damping or --coulomb-friction?",
+        "check haptic-paddle --transmission.viscous 3": "did you mean --transmission.handle-damping?",
         "check haptic-paddle --ppr 3": "did you mean --counts-per-turn or --resolution?",
         "check haptic-paddle --loop-rate 3": "did you mean --rate?",
         "check haptic-paddle --stiffness 3 --resolution '4096 counts'": "are given as counts_per_turn",

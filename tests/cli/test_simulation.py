@@ -189,6 +189,19 @@ def test_a_hand_that_met_nothing_says_so(run, refused):
     assert "--initial-position" in error or "initial_position" in error
 
 
+def test_what_is_left_alone_and_shakes(run):
+    """A centring spring acts everywhere: there is no contact to count, and no hand to get energy out."""
+    wheel = "--inertia 0.006 --damping 0.02 --coulomb-friction 0.05 --rate 1000 --delay '2 ms'"
+    spring = "--type nonlinear-spring --positions='-90 deg, 90 deg' --forces='-{0} N*m, {0} N*m'"
+    said = run(f"simulate {wheel} {spring.format(45)} --operator hands-off --initial-velocity '90 deg/s'").out
+    assert said.split()[0] == "SHAKES"
+    assert "farthest position" in said
+    assert "contacts made" not in said
+    assert "2 s of it" in said
+    soft = run(f"simulate {wheel} {spring.format(4)} --operator hands-off --initial-velocity '90 deg/s'")
+    assert soft.out.split()[0] == "TOUCH"
+
+
 def test_hands_are_named_with_a_word_and_one_to_begin_with(refused):
     error = refused(f"{WALL} --duration 1")
     assert "begin with --operator typical" in error

@@ -336,6 +336,16 @@ def test_what_cannot_be_read_is_said_in_one_line(tmp_path, urdf, capfd):
             read_arm(tmp_path / name)
     with pytest.raises(zw.InputError, match="no frame"):
         read_arm(urdf, frame="hook")
+    fingers = [
+        _joint(f"to {side}", "tip", side, 0.01, extra=LIMIT.format(0.01)) for side in ("left", "right")
+    ]
+    names = ("base", "upper", "lower", "tip", "left", "right")
+    gripper = robot(tmp_path / "gripper.urdf", names, SHOULDER, ELBOW, HAND, *fingers)
+    with pytest.raises(
+        zw.InputError, match=r"gripper.urdf branches, and ends at left, right: .* --frame NAME"
+    ):
+        read_arm(gripper)
+    assert read_arm(gripper, frame="tip").frame == "tip"
     assert capfd.readouterr() == ("", "")
 
 

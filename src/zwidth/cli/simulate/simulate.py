@@ -74,8 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     plot, sound, save = _targets(arguments)
     tables = read_tables(arguments.sources, (*TABLES, *PAIR_TABLES, FOLLOWER))
     pair = any(name in tables for name in PAIR_TABLES)
-    trace, missed, hand = (
-        (simulated_pair(arguments, tables), "", "") if pair else _simulated(arguments, tables)
+    trace, missed, hand, everywhere = (
+        (simulated_pair(arguments, tables), "", "", False) if pair else _simulated(arguments, tables)
     )
     if sound is not None:
         from zwidth.loop.traces.files import save_sound
@@ -97,13 +97,13 @@ def run(arguments: argparse.Namespace) -> int:
         if pair:
             print_pair_trace(trace, arguments.in_full)
         else:
-            print_trace(trace, arguments.in_full, missed, hand)
+            print_trace(trace, arguments.in_full, missed, hand, everywhere)
         say_written(save, plot, sound)
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 
 
-def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[Trace, str, str]:
-    """The touch, and what is to be said where it met nothing, and where the hand is one of another device."""
+def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tuple[Trace, str, str, bool]:
+    """The touch, what to say where it met nothing, and of the hand; and whether the law acts everywhere."""
     from zwidth.cli.simulate.tables import (
         FOLLOWER,
         build_touch,
@@ -137,6 +137,7 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
         trace,
         never_reached(trace, environment.met, loop.device.motion),
         "; ".join(filter(None, remarks)),
+        _surface(environment.met) is None,
     )
 
 

@@ -26,21 +26,27 @@ if TYPE_CHECKING:
 _MOVING = 1e-9
 
 
-_FEW = ("deepest position", "largest actuator force", "contacts made", "at the end")
+_FEW = ("deepest position", "farthest position", "largest actuator force", "contacts made", "at the end")
 """Of the measures: what a short report has."""
 
 
-def print_trace(trace: AnyTrace, in_full: bool = False, missed: str = "", hand: str = "") -> None:
-    """Print the report of one trace; `missed` says that the hand met nothing, `hand` which would suit."""
+def print_trace(
+    trace: AnyTrace, in_full: bool = False, missed: str = "", hand: str = "", everywhere: bool = False
+) -> None:
+    """Print the report of one trace.
+
+    `missed` says that the hand met nothing, `hand` which would suit; `everywhere` that the law acts at every
+    position, so that no contact is made.
+    """
+    rows = [row for row in _measures(trace, everywhere) if not (missed and row[0] == "contacts made")]
     with page() as out:
         out.print(headline("missed", "yellow", missed) if missed else trace_headline(trace))
         if not in_full:
-            few = [name for name in _FEW if not (missed and name == "contacts made")]
-            blocks(out, [row for row in _measures(trace) if row[0] in few], _about(trace, hand))
+            blocks(out, [row for row in rows if row[0] in _FEW], _about(trace, hand))
             more_with_all(out, "every measure, where each joule went")
             return
         out.print(below(grid(_about(trace, hand))))
-        out.print(below(grid(_measures(trace))))
+        out.print(below(grid(rows)))
         out.print(Text("energy", style="bold"))
         out.print(grid((text, shown(value, "J")) for text, value in ledger(trace).rows()))
 
@@ -62,6 +68,8 @@ def trace_headline(trace: AnyTrace) -> Padding:
     """Whether this hand got energy out, and what that shows."""
     book = ledger(trace)
     got, held = shown(book.got_out, "J"), book.held_at_start
+    if (shaking := _shaking(trace)) is not None:
+        return headline("shakes", "red", shaking)
     significant = book.got_out > ROUNDING * book.moved
     if book.active:
         there = f"the {shown(held, 'J')} that" if held else "there"
@@ -78,6 +86,25 @@ def trace_headline(trace: AnyTrace) -> Padding:
     else:
         words = "This hand got no energy out of the loop."
     return headline("touch", "blue", f"{words} That proves nothing of other hands: see zwidth check.")
+
+
+_TURNS = 4
+"""Stops and turns of what comes back and forth, and is not thrown off once."""
+
+
+def _shaking(trace: AnyTrace) -> str | None:
+    """What to say where nobody holds the device, and it swings no less in the end than it did at first."""
+    x = trace["position"].values
+    if trace["hand_force"].values.any() or trace.attrs["stops"] < _TURNS:
+        return None
+    first, last = (float(np.ptp(part)) for part in (x[: x.size // 4], x[-(x.size // 4) :]))
+    if not 0 < first <= last:
+        return None
+    unit = UNITS[str(trace.attrs["motion"])][0]
+    return (
+        f"Left alone it goes on: it swings {shown(first, unit)} in the first quarter of the time, "
+        f"{shown(last, unit)} in the last. No hand takes part, so none got energy out."
+    )
 
 
 def _about(trace: AnyTrace, hand: str) -> Iterator[tuple[str, str]]:
@@ -107,15 +134,19 @@ def how_long(trace: AnyTrace) -> Iterator[tuple[str, str]]:
         yield "diverged", f"at {shown(about['diverged_at_s'], 's')}: beyond that the numbers mean nothing"
 
 
-def _measures(trace: AnyTrace) -> Iterator[tuple[str, str]]:
+def _measures(trace: AnyTrace, everywhere: bool) -> Iterator[tuple[str, str]]:
     motion = str(trace.attrs["motion"])
     units, values = units_of(motion), measure(trace)
     length, speed, _ = UNITS[motion]
-    yield "deepest position", shown(values["deepest_position"], length)
+    if everywhere:
+        yield "farthest position", shown(float(np.abs(trace["position"].values).max()), length)
+    else:
+        yield "deepest position", shown(values["deepest_position"], length)
     yield "largest actuator force", shown(values["peak_actuator_force"], units["peak_actuator_force"])
     yield "largest force of the hand", shown(values["peak_hand_force"], units["peak_hand_force"])
     yield "chatter above 30 Hz inside", shown(values["chatter"], units["chatter"])
-    yield "contacts made", f"{values['contacts']:.0f}"
+    if not everywhere:
+        yield "contacts made", f"{values['contacts']:.0f}"
     yield "stops and turns", f"{values['stops']:.0f}"
     x, v = float(trace["position"].values[-1]), float(trace["velocity"].values[-1])
     state = "at rest" if abs(v) <= _MOVING else f"moving at {shown(v, speed)}"

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import get_close_matches
 from functools import cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -20,6 +19,7 @@ from typing import Any, NamedTuple
 from zwidth.errors import InputError
 from zwidth.model.device.device import Device, Motion
 from zwidth.model.device.rotary import ROTARY, rotary
+from zwidth.model.specification.table import suggestion
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of
@@ -115,9 +115,7 @@ def entry(name: str) -> Entry:
     """What is published about one device."""
     found = _entries().get(name)
     if found is None:
-        near = get_close_matches(str(name), names(), n=1)
-        hint = f'did you mean "{near[0]}"?' if near else f"it has: {', '.join(names())}"
-        raise InputError(f"the catalogue has no device {str(name)[:40]!r}; {hint}")
+        raise InputError(f"the catalogue has no device {str(name)[:40]!r}; {suggestion(str(name), names())}")
     return found
 
 
@@ -180,9 +178,7 @@ def _override(found: Entry, key: str, value: Any) -> Any:
     if key in ("name", "motion", "transmission"):
         return value
     if key not in found.properties:
-        near = get_close_matches(key, found.properties, n=1)
-        hint = f'did you mean "{near[0]}"?' if near else f"it has: {', '.join(found.properties)}"
-        raise InputError(f"a device has no {key!r}; {hint}")
+        raise InputError(f"a device has no {key!r}; {suggestion(key, found.properties)}")
     return None if value is None else parse(value, found.unit(key), key)
 
 

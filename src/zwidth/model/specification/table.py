@@ -115,16 +115,19 @@ def suggestion(text: str, known: Iterable[str], option: str = "", more: str = ""
 
 def _called(word: str, known: Sequence[str]) -> list[str]:
     """Of what people call so the keys that are known here; of keys between bars the first."""
+    part, dot, last = word.rpartition(".")  # of a cable, transmission.friction
+    before = part + dot
     for keys, words in _WORDS.items():
-        if word in words.split():
-            found = ([one for one in either.split("|") if one in known] for either in keys.split())
+        if last in words.split():
+            each = ([before + one for one in either.split("|")] for either in keys.split())
+            found = ([one for one in either if one in known] for either in each)
             return [one[0] for one in found if one]
     return []
 
 
 _WORDS = {
-    "damping coulomb_friction": "friction",
-    "damping": "viscous viscosity viscous_friction viscous_damping device_damping",
+    "handle_damping|damping handle_coulomb_friction|coulomb_friction": "friction",
+    "handle_damping|damping": "viscous viscosity viscous_friction viscous_damping device_damping",
     "coulomb_friction": "coulomb dry_friction static_friction",
     "counts_per_turn resolution": "counts ppr cpr counts_per_rev counts_per_revolution pulses_per_revolution",
     "resolution counts_per_turn": "encoder encoder_resolution position_resolution",
