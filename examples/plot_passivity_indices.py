@@ -13,6 +13,7 @@ from scipy.signal import TransferFunction
 
 import zwidth as zw
 from zwidth.show import plots
+from zwidth.show.plots.style import heading
 
 plt.rcParams.update(plots.LOOK)
 
@@ -37,7 +38,7 @@ for name, indices in found.items():
 figure, axes = plt.subplots(1, 3, figsize=(12, 3.4), layout="constrained")
 for axis, (name, indices) in zip(axes, found.items(), strict=False):
     plots.draw_index(axis, indices.input)
-    axis.set_title(name)
+    heading(axis, name)
     axis.set_ylabel("Re $G$ [m/s per N]")
 worst = found["encoder at the handle"].input
 burst = worst.refute(0)
