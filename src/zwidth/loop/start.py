@@ -196,11 +196,7 @@ def _of_linear(at: Start, law: Environment) -> Held:
     alone = _is_memoryless(law, at.period)
     exact = (at.resolution == 0.0 or alone) and at.actuation.step == 0.0 and at.actuation.limit == 0.0
     tight = exact or (alone and at.is_paid(max(k, 0.0), abs(k)))
-    return Held(
-        stored=stored,
-        friction=0.0 if tight else at.plant.coulomb + at.error(abs(k)),
-        force=force,
-    )
+    return Held(stored=stored, friction=0.0 if tight else at.plant.coulomb + at.error(abs(k)), force=force)
 
 
 def _static_stiffness(law: Environment, period: Fraction) -> Fraction | None:

@@ -71,13 +71,7 @@ GLOSSARY: dict[str, Quantity] = dict(
             "rad/s",
             "at which compensation of Coulomb friction has come to three quarters; 0: at any speed",
         ),
-        _q(
-            "reflection",
-            "r",
-            "1",
-            "1",
-            "how many times an arm adds the coupling force of the other",
-        ),
+        _q("reflection", "r", "1", "1", "how many times an arm adds the coupling force of the other"),
         _q("compensation", "", "1", "1", "of friction, as a share of what it is"),
         _q("link_delay", "τ_link", "s", "s", "from one arm's reading to the other's controller"),
         _q(

@@ -327,11 +327,7 @@ def _read(value: Any, quantity: Quantity, name: str, read: Reader, motion: str) 
 
 
 _BOUNDS: Mapping[str, Callable[[Any, Any], bool]] = MappingProxyType(
-    {
-        "> 0": lambda low, high: low > 0,
-        "≥ 0": lambda low, high: low >= 0,
-        "≤ 0": lambda low, high: high <= 0,
-    }
+    {"> 0": lambda low, high: low > 0, "≥ 0": lambda low, high: low >= 0, "≤ 0": lambda low, high: high <= 0}
 )
 
 _AS_IT_IS = (Exact, int, float, Fraction)

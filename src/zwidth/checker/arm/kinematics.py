@@ -139,9 +139,7 @@ def chain_surplus(
 
 
 def jacobian(
-    chain: Chain,
-    size: int,
-    turning: Callable[[Sequence[Enclosed]], list[list[Enclosed]]] | None = None,
+    chain: Chain, size: int, turning: Callable[[Sequence[Enclosed]], list[list[Enclosed]]] | None = None
 ) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
     """The columns of J of the hand's coordinates, `size` of them; the last ones are those of `turning`."""
     fixed = _placements(chain)

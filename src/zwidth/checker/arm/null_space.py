@@ -41,10 +41,7 @@ NULL_SPACE = document(
         "arm": CHAIN,
         "wall": WALL,
         "loop": Record(
-            {
-                "sample_period": Number(SECONDS, above=0),
-                "delay_samples": Whole(least=0, most=MOST_DELAY),
-            }
+            {"sample_period": Number(SECONDS, above=0), "delay_samples": Whole(least=0, most=MOST_DELAY)}
         ),
         "spring": Record(
             {

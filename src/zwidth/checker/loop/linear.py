@@ -19,9 +19,7 @@ from .loop import LOOP, MOST_DELAY, Loop, in_whole_numbers, loop_of, require_law
 # for a delay of d + α samples; for α = 0 without the factor b and the last term.
 
 STABILITY = OneOf(
-    "kind",
-    {"open loop": Record({}), "closed loop": Record({"offset": Number(above=0)})},
-    shown=False,
+    "kind", {"open loop": Record({}), "closed loop": Record({"offset": Number(above=0)})}, shown=False
 )
 CRITERION = {"positivity": POSITIVITY, "stability": STABILITY}
 

@@ -16,10 +16,7 @@ MOST_SAMPLES = 4_000_000
 REPEAT = Record({"first": Whole(least=0), "last": Whole(least=0), "times": Whole(least=1)}, shown=False)
 """A part of the motion, listed once, that is done so many times."""
 
-TOLD = {
-    "sample_period": Number(SECONDS, default=None, shown=False),
-    "energy": Number(JOULES, shown=False),
-}
+TOLD = {"sample_period": Number(SECONDS, default=None, shown=False), "energy": Number(JOULES, shown=False)}
 """What a motion says of itself, and is compared."""
 
 MOTION = document(

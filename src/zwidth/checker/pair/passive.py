@@ -203,10 +203,7 @@ def _spent(side: Side, line: Line, period: Fraction) -> Side:
 
 
 def criterion(
-    told: Read,
-    arms: Sequence[Side],
-    lines: Sequence[Line] = (NO_LINE, NO_LINE),
-    losses: Read | None = None,
+    told: Read, arms: Sequence[Side], lines: Sequence[Line] = (NO_LINE, NO_LINE), losses: Read | None = None
 ) -> Criterion | None:
     """The diagonal of the form, and its determinant; None where the drive of an arm alone lets it gain."""
     period = told.sample_period

@@ -416,11 +416,7 @@ PLAINLY: dict[str, Check] = {
     "row storage": row_storage_plainly,
 }
 """With the standard library alone."""
-FAST: dict[str, Check] = {
-    "storage": storage,
-    "coarse storage": coarse_storage,
-    "row storage": storage_of_row,
-}
+FAST: dict[str, Check] = {"storage": storage, "coarse storage": coarse_storage, "row storage": storage_of_row}
 
 
 def checked(told: Read) -> str:

@@ -111,10 +111,7 @@ class HeldJoints(Documented):
 
 
 def check_controllers(
-    controllers: Controllers,
-    plant: str | Device,
-    rate: RealLike | None = None,
-    delay: RealLike | None = None,
+    controllers: Controllers, plant: str | Device, rate: RealLike | None = None, delay: RealLike | None = None
 ) -> HeldJoints:
     """Decide for each joint of one arm whether a hand can take energy out of its spring.
 

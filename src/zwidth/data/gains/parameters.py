@@ -34,10 +34,7 @@ def text_of(tree: Tree, head: Sequence[str]) -> str:
 
 
 def parameter_file(
-    laws: Sequence[tuple[JointLaw, Remarks]],
-    rate: Fraction,
-    manager: tuple[str, ...],
-    head: Sequence[str],
+    laws: Sequence[tuple[JointLaw, Remarks]], rate: Fraction, manager: tuple[str, ...], head: Sequence[str]
 ) -> str:
     """The text of a file with these joints, each with remarks on its "p", "i" and "d", below comments. `rate`
     [Hz] is of the controller manager, below the keys `manager`; one that is no whole number is said in the

@@ -219,11 +219,7 @@ def _stamp(message: Any) -> int:
 
 
 def _read(
-    path: Path,
-    bag: Any,
-    names: tuple[str, ...],
-    columns: dict[str, _Column],
-    notes: dict[str, Finding],
+    path: Path, bag: Any, names: tuple[str, ...], columns: dict[str, _Column], notes: dict[str, Finding]
 ) -> Iterator[tuple[Values, ...]]:
     wanted = {name: columns[name] for name in names if name != TIME}
     first = next(iter(wanted))

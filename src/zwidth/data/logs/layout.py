@@ -14,14 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
 
-from zwidth.data.logs.cells import (
-    are_plain,
-    decimal_of,
-    is_clock,
-    is_date,
-    is_nothing,
-    is_number,
-)
+from zwidth.data.logs.cells import are_plain, decimal_of, is_clock, is_date, is_nothing, is_number
 from zwidth.data.logs.columns import is_unit
 from zwidth.errors import InputError
 

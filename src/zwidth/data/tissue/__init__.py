@@ -3,13 +3,7 @@
 from zwidth.data.tissue.adaptive import AdaptiveSolid, Rendered, required_damping
 from zwidth.data.tissue.experiment.fit import fit_test, read_test
 from zwidth.data.tissue.experiment.result import TissueTest
-from zwidth.data.tissue.first_order import (
-    Solid,
-    coefficients,
-    five_parameters,
-    solid_of,
-    solid_of_five,
-)
+from zwidth.data.tissue.first_order import Solid, coefficients, five_parameters, solid_of, solid_of_five
 from zwidth.data.tissue.fit import TissueComparison, compare_tissues, fit_tissue
 from zwidth.data.tissue.recursive import RecursiveSolid, Track, Tracker, track_five_parameters
 from zwidth.data.tissue.result import TissueFit

@@ -254,12 +254,7 @@ class PortRun:
         """What happened so far."""
         connection = self.connection
         return PortReport(
-            connection.describe(),
-            self.ended,
-            self._samples,
-            self._held,
-            self._later,
-            connection.met_hardware,
+            connection.describe(), self.ended, self._samples, self._held, self._later, connection.met_hardware
         )
 
 

@@ -76,11 +76,7 @@ EXAMPLES = (
         "gain files of two arms: which joints are passive?",
         'zwidth gains leader.yaml follower.yaml --link-delay "2 ms"',
     ),
-    Example(
-        ("room.toml",),
-        "a scene cut into two processes and a device",
-        "zwidth network room.toml --plan",
-    ),
+    Example(("room.toml",), "a scene cut into two processes and a device", "zwidth network room.toml --plan"),
     Example(
         ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb"),
         "three lessons for a class; the package jupyterlab opens them",

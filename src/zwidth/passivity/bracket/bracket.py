@@ -169,10 +169,7 @@ _NO_PART = {
     "supply_voltage": "the actuator is taken to give every force at once",
     "current_limit": "the actuator is taken to give every force at once",
 }
-_NO_PART_BEHIND = {
-    "handle_mass": _NO_PART["mass"],
-    "handle_coulomb_friction": "a large motion outweighs it",
-}
+_NO_PART_BEHIND = {"handle_mass": _NO_PART["mass"], "handle_coulomb_friction": "a large motion outweighs it"}
 
 
 def refuse_without_part(key: str, force_limit: bool, force_resolution: bool) -> None:

@@ -182,12 +182,7 @@ class Elastic:
         before = (stays * late[2] + first[0] * late[3], -(k / m) * first[0] * late[2] + first[1] * late[3])
         return (
             [arb(1), -trace, fall],
-            [
-                arb(0),
-                now[0],
-                rise * now[1] - hold * now[0] + before[0],
-                rise * before[1] - hold * before[0],
-            ],
+            [arb(0), now[0], rise * now[1] - hold * now[0] + before[0], rise * before[1] - hold * before[0]],
         )
 
 

@@ -207,9 +207,7 @@ class PairVerdict(PassivityAnswer):
         yield from assumed_of_arms(pair)
 
     @cached_property
-    @answers(
-        quantity="stiffness",
-    )
+    @answers(quantity="stiffness")
     def largest_stiffness(self) -> float | None:
         """The largest K, both sides in proportion and all else as it is, that is passive; None if none is."""
         return largest_stiffness(self.pair)

@@ -25,13 +25,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.ports.evidence import ExtractingInput, index_document, proof_document
 from zwidth.passivity.ports.index import PassivityIndex, evidenced
 from zwidth.passivity.ports.largest import largest_level
-from zwidth.passivity.ports.port import (
-    Polynomials,
-    Port,
-    as_polynomials,
-    leverrier,
-    typed_at_most,
-)
+from zwidth.passivity.ports.port import Polynomials, Port, as_polynomials, leverrier, typed_at_most
 from zwidth.passivity.ports.positive_real import OFFSET, Band, bands, in_words, is_stable, prove_level
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
 from zwidth.passivity.result import PassivityAnswer

@@ -151,11 +151,7 @@ class Workspace(PassivityAnswer):
     )
 
     @property
-    @answers(
-        key="addition_to_one",
-        unit="N*m*s/rad",
-        finite=True,
-    )
+    @answers(key="addition_to_one", unit="N*m*s/rad", finite=True)
     def additions(self) -> tuple[float, ...]:
         """The damping that, given to one joint alone, proves the region; ∞, null, where none [N·m·s/rad]."""
         return tuple(addition.enough[joint] for joint, addition in enumerate(self.added.alone))

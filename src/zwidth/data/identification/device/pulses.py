@@ -286,11 +286,7 @@ def positions(counts: Array, strokes: Strokes) -> Array:
 
 @compiled
 def _between_ticks(
-    found: Array,
-    ticks: NDArray[np.int64],
-    edges: Array,
-    first: NDArray[np.int64],
-    last: NDArray[np.int64],
+    found: Array, ticks: NDArray[np.int64], edges: Array, first: NDArray[np.int64], last: NDArray[np.int64]
 ) -> None:
     at = 0
     for stroke in range(first.size):

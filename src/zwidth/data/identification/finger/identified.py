@@ -58,11 +58,7 @@ def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
 
 def _ranges(pieces: Pieces) -> str:
     """How far each column goes, the unlikely ones named."""
-    columns = {
-        "position": pieces.position,
-        "hand_force": pieces.hand,
-        "actuator_force": pieces.actuator,
-    }
+    columns = {"position": pieces.position, "hand_force": pieces.hand, "actuator_force": pieces.actuator}
     said = []
     for name, values in columns.items():
         if values is None:

@@ -220,10 +220,7 @@ class TissueTest(Documented):
         return self.best.environment(discretization, level=level)
 
     def wall(
-        self,
-        device: Device,
-        discretization: Discretization = "backward",
-        contact: str = "made and broken",
+        self, device: Device, discretization: Discretization = "backward", contact: str = "made and broken"
     ) -> Bracket:
         """How many times the tissue the device may render: proved passive below, refuted above.
 

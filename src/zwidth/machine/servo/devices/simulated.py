@@ -30,14 +30,7 @@ from zwidth.loop.plant import (
     WORK,
 )
 from zwidth.loop.setup import Setup, prepare
-from zwidth.loop.two_bodies import (
-    INSIDE_LOSS,
-    MOTOR,
-    MOTOR_VELOCITY,
-    SERIES_OF_TWO,
-    STATE_OF_TWO,
-    packed_two,
-)
+from zwidth.loop.two_bodies import INSIDE_LOSS, MOTOR, MOTOR_VELOCITY, SERIES_OF_TWO, STATE_OF_TWO, packed_two
 from zwidth.loop.two_masses_run import travel_two
 from zwidth.machine.servo.connection import (
     CLOSED,

@@ -55,12 +55,7 @@ FRAME = 0.05
 
 
 def open_page(
-    rows: Rows,
-    port: int = 0,
-    open_browser: bool = True,
-    *,
-    surface: float | None = 0.0,
-    frame: float = FRAME,
+    rows: Rows, port: int = 0, open_browser: bool = True, *, surface: float | None = 0.0, frame: float = FRAME
 ) -> Page:
     """Serve a page with four graphs of a running loop: position, force, energy and lateness.
 
