@@ -193,8 +193,8 @@ def test_a_short_search_is_written_out() -> None:
 
 
 def test_a_table_has_what_can_be_read_alone() -> None:
-    """Of 200 known numbers, of which a search reads 3 to 62, and a hundred further, those are kept."""
-    program = specialised(_searched, (np.arange(200.0), 63, 100, Variable("real", "x")))
+    """Of 500 known numbers, of which a search reads 3 to 139, and 200 further, those are kept."""
+    program = specialised(_searched, (np.arange(500.0), 140, 200, Variable("real", "x")))
     loads = [s for s in program.statements() if isinstance(s, Load)]
     kept = {s.source.values for s in loads if isinstance(s.source, Table)}
-    assert kept == {tuple(map(float, range(3, 63))), tuple(map(float, range(103, 163)))}
+    assert kept == {tuple(map(float, range(3, 140))), tuple(map(float, range(203, 340)))}

@@ -124,7 +124,7 @@ _ZERO = Constant(0, "integer")
 Bounds = tuple[float, float]
 
 _ANY: Bounds = (-inf, inf)
-_ROUNDS = 8
+_ROUNDS = 16
 """After which a bound that still grows is given up."""
 
 
