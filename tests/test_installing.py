@@ -166,7 +166,7 @@ def test_no_message_has_a_command_of_its_own():
 def test_every_extra_that_is_asked_for_exists():
     import tomllib
 
-    asked = re.compile(r'needed\(.*, "(\w+)"')
+    asked = re.compile(r'(?:needed|imported)\(.*, "(\w+)"')
     files = [*(ROOT / "src").rglob("*.py")]
     extras = {extra for path in files for extra in asked.findall(path.read_text(encoding="utf-8"))}
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

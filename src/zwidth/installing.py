@@ -27,14 +27,18 @@ def needed(what: str, extra: str = "", *, package: str = "", otherwise: str = ""
     return InputError(f"{what} is not installed; {way_out}", line(extra, package))
 
 
-def library(module: str, cannot: str) -> Any:
-    """A library that reads the logs of others; `cannot` begins the message where it is not installed, such as
-    "a.parquet is not read: Parquet"."""
+def imported(module: str, what: str, extra: str, otherwise: str = "") -> Any:
+    """A module that may be missing; what is said then, see `needed`."""
     try:
         return import_module(module)
     except ImportError:
-        name = module.partition(".")[0]
-        raise needed(f"{cannot} takes {name}, which", "logs") from None
+        raise needed(what, extra, otherwise=otherwise) from None
+
+
+def library(module: str, cannot: str) -> Any:
+    """A library that reads the logs of others; `cannot` begins the message where it is not installed, such as
+    "a.parquet is not read: Parquet"."""
+    return imported(module, f"{cannot} takes {module.partition('.')[0]}, which", "logs")
 
 
 def parquet(cannot: str) -> Any:

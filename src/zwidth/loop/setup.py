@@ -325,7 +325,7 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
         hand_mass=hand.mass,
         damping=float(device.exact("damping")),
         coulomb=float(device.exact("coulomb_friction")),
-        stiction=_stiction(device),
+        stiction=float(device.exact("coulomb_friction" if device.stiction is None else "stiction")),
         stiffness=hand.stiffness,
         hand_damping=hand.damping,
         lag=actuation.lag,
@@ -380,10 +380,6 @@ def _mass(device: Device, operator: Operator) -> float:
             "what a hand feels does; give mass [kg], or prescribe the motion"
         )
     return float(device.exact("mass"))
-
-
-def _stiction(device: Device) -> float:
-    return float(device.exact("coulomb_friction" if device.stiction is None else "stiction"))
 
 
 def _check_pieces(plant: Plant, period: float, kinematic: bool) -> None:

@@ -115,9 +115,5 @@ def _set(table: Table) -> Lines:
     for head in table.heads:
         lines.add_row(*(Text(cell, "dim") for cell in head))
     for cells in table.rows:
-        lines.add_row(*(Text(cell, _style(cell)) for cell in cells))
+        lines.add_row(*(Text(cell, TOLD[cell].terminal if cell in TOLD else "") for cell in cells))
     return lines
-
-
-def _style(cell: str) -> str:
-    return TOLD[cell].terminal if cell in TOLD else ""

@@ -14,21 +14,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import sqrt
-from pathlib import Path
 
 import numpy as np
 
 from zwidth.data.gains.controllers import CartesianGains
 from zwidth.data.gains.parameters import Tree, double, place_of, text_of
-from zwidth.data.gains.passive import SHARE, rounded_down, share_of
+from zwidth.data.gains.passive import SHARE, Saved, rounded_down, share_of
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm
 from zwidth.model.arms.wall import MatrixWall
 from zwidth.passivity.workspace import PostureMap, stiffness_over_postures
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
-from zwidth.showing import Shown
-from zwidth.writing import writing_whole
 
 _AXES = ("x", "y", "z")
 _TRIES = 4
@@ -37,7 +34,7 @@ _LESS = 0.98
 
 
 @dataclass(frozen=True, repr=False)
-class BorneImpedance(Shown):
+class BorneImpedance(Saved):
     """An impedance that all postures bear that were tried, as a parameter file of ros2_control.
 
     Attributes
@@ -69,17 +66,6 @@ class BorneImpedance(Shown):
         place["stiffness"] = dict(self._groups(self.stiffness, self.asked.stiffness, ("N/m", "N*m/rad")))
         place["damping"] = dict(self._groups(self.factors, self.asked.factors, ("factor", "factor")))
         return text_of(tree, list(self._head()))
-
-    def save(self, path: str | Path) -> None:
-        """Write it as YAML, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        with writing_whole(Path(path)) as file:
-            file.write(self.to_yaml().encode())
 
     @property
     def size(self) -> int:

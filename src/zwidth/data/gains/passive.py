@@ -11,6 +11,7 @@ there is none.  What is found is rounded down and proved by itself, with the sha
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -43,8 +44,27 @@ _TRIES = 6
 _HALVINGS = 24
 
 
+class Saved(Shown, ABC):
+    """What was found, as a file that an arm reads."""
+
+    @abstractmethod
+    def to_yaml(self) -> str:
+        """As text: below the names of the file, units and what was found in comments."""
+
+    def save(self, path: str | Path) -> None:
+        """Write it as YAML, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        with writing_whole(Path(path)) as file:
+            file.write(self.to_yaml().encode())
+
+
 @dataclass(frozen=True, repr=False)
-class PassiveGains(Shown):
+class PassiveGains(Saved):
     """Gains of one arm's joints that are proved, as a parameter file of ros2_control.
 
     Attributes
@@ -90,17 +110,6 @@ class PassiveGains(Shown):
             self.asked.manager,
             list(self._head()),
         )
-
-    def save(self, path: str | Path) -> None:
-        """Write it as YAML, whole or not at all.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        with writing_whole(Path(path)) as file:
-            file.write(self.to_yaml().encode())
 
     def _head(self) -> Iterator[str]:
         yield (

@@ -287,25 +287,17 @@ def _times(given: tuple[RealLike, RealLike] | None, period: Exact) -> tuple[Exac
     return low, high
 
 
-# The published recursive estimate of a solid, on five parameters for three.
-#
-#     F_t = −a1 F_{t−1} − a2 F_{t−2} + b1 u_t + b2 u_{t−1} + b3 u_{t−2}
-#
-# is the bilinear recursion of a standard linear solid times (1 + z⁻¹), estimated by least squares with
-# forgetting.
-
-
 def track_five_parameters(
     position: ArrayLike,
     force: ArrayLike,
     sample_period: RealLike,
     *,
     forgetting: RealLike = "0.999",
-    initial_covariance: float = 1e6,
 ) -> Mapping[str, Array]:
     """The published regression on five parameters, beside which there is a line of others as good.
 
-    F_t = −a1 F_{t−1} − a2 F_{t−2} + b1 u_t + b2 u_{t−1} + b3 u_{t−2} is three parameters times (1 + z⁻¹).
+    F_t = −a1 F_{t−1} − a2 F_{t−2} + b1 u_t + b2 u_{t−1} + b3 u_{t−2}, estimated by least squares with
+    forgetting, is the bilinear recursion of a standard linear solid, three parameters, times (1 + z⁻¹).
     With (1 + c z⁻¹) for any c the same motion fits as well, so that P grows along that line as λ⁻ᵏ and the
     estimates drift.  Use `RecursiveSolid`; this is here to show it.
 
@@ -317,8 +309,6 @@ def track_five_parameters(
         T > 0 [s].
     forgetting
         λ. Default 0.999.
-    initial_covariance
-        P at the start, times the identity.
 
     Returns
     -------
@@ -341,7 +331,7 @@ def track_five_parameters(
     if x.ndim != 1 or x.shape != f.shape:
         raise InputError("position and force are two arrays of one length")
     out = np.full((6, x.size), np.nan)
-    p = (initial_covariance * np.eye(5)).ravel()
+    p = (1e6 * np.eye(5)).ravel()
     recursion.run_five(np.zeros(5), p, np.zeros(10), x, f, keep, out)
     a1, b1, b3 = out[0], out[2], out[4]
     viscous = a1 * b1 - b1 - b3

@@ -7,7 +7,6 @@ zenoh:NAME             found by multicast; or zenoh:NAME,ENDPOINT, where the fir
 
 from __future__ import annotations
 
-import importlib
 import json
 import mmap
 import os
@@ -18,7 +17,6 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from zwidth import installing
 from zwidth.errors import InputError
@@ -167,10 +165,7 @@ class Zenoh(Channel):
     def __init__(
         self, name: str, first: bool, *, listen: Sequence[str] = (), connect: Sequence[str] = ()
     ) -> None:
-        try:
-            zenoh: Any = importlib.import_module("zenoh")
-        except ImportError:
-            raise installing.needed("Eclipse Zenoh", "networks", otherwise="take UDP") from None
+        zenoh = installing.imported("zenoh", "Eclipse Zenoh", "networks", "take UDP")
         config = zenoh.Config()
         config.insert_json5("mode", '"peer"')
         if listen or connect:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
-from typing import Literal, NoReturn, Self
+from typing import ClassVar, Literal, NoReturn, Self
 
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment, PowerLaw, clamping, never_pulls, with_unit
@@ -32,8 +32,25 @@ MOST_POINTS = 10_000
 _HARDENING = Quantity("hardening", "H", "N/m^3", "N*m/rad^3", "of a stop, with the cube of the depth")
 
 
+class _Nonlinear(Environment):
+    _name: ClassVar[str]
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> NoReturn:
+        """There is none.
+
+        Raises
+        ------
+        InputError
+            Always: only a linear law has an H(z).
+        """
+        raise InputError(
+            f"a {self._name} has no H(z): the law is not linear; "
+            "zwidth.check, zwidth.simulate and zwidth.limit take it"
+        )
+
+
 @dataclass(frozen=True)
-class NonlinearSpring(Environment):
+class NonlinearSpring(_Nonlinear):
     """A memoryless spring through points, linear between them and constant beyond.
 
     It acts on both sides of x = 0.
@@ -51,6 +68,8 @@ class NonlinearSpring(Environment):
         If they are not lists of numbers, not equally many, too few or too many, or the positions
         do not increase.
     """
+
+    _name = "nonlinear spring"
 
     positions: Numbers = listed("position", meaning="positions of the points, increasing")
     forces: Numbers = listed("force", meaning="forces at the points, > 0 towards smaller positions")
@@ -158,19 +177,6 @@ class NonlinearSpring(Environment):
         low, high = self.forces[i - 1].fraction, self.forces[i].fraction
         return Exact(low + (high - low) * (x - places[i - 1]) / (places[i] - places[i - 1]))
 
-    def pulse_transfer_function(self, sample_period: Fraction) -> NoReturn:
-        """There is none.
-
-        Raises
-        ------
-        InputError
-            Always: only a linear law has an H(z).
-        """
-        raise InputError(
-            "a nonlinear spring has no H(z): the law is not linear; "
-            "zwidth.check, zwidth.simulate and zwidth.limit take it"
-        )
-
     def describe(self, motion: str = "linear") -> str:
         """The points in short and the largest slope, on one line, in linear or rotary units."""
         first, last = (with_unit("position", x, motion) for x in (self.positions[0], self.positions[-1]))
@@ -229,7 +235,7 @@ DIGITS = 17
 
 
 @dataclass(frozen=True)
-class HuntCrossley(Environment):
+class HuntCrossley(_Nonlinear):
     """Contact inside x > 0 whose damping grows with the depth, ``f = K uⁿ (1 + λ v)``.
 
     v is the backward difference of the measured positions, inside and outside.
@@ -250,6 +256,8 @@ class HuntCrossley(Environment):
     InputError
         If one of them is not such a number, or clamped is not a bool.
     """
+
+    _name = "Hunt–Crossley contact"
 
     stiffness: Certain = exact(
         plain("hunt_crossley_stiffness", "K of a Hunt–Crossley contact, in N/mⁿ"),
@@ -291,19 +299,6 @@ class HuntCrossley(Environment):
         f = resting_force(self.stiffness.fraction, self.exponent.fraction, x)
         f *= 1 + self.dissipation.fraction * v
         return Exact(max(f, Fraction(0)) if self.clamped else f)
-
-    def pulse_transfer_function(self, sample_period: Fraction) -> NoReturn:
-        """There is none.
-
-        Raises
-        ------
-        InputError
-            Always: only a linear law has an H(z).
-        """
-        raise InputError(
-            "a Hunt–Crossley contact has no H(z): the law is not linear; "
-            "zwidth.check, zwidth.simulate and zwidth.limit take it"
-        )
 
     def scaled(self, factor: Fraction) -> Self:
         """The contact with factor · K, exactly: every force times the factor."""

@@ -233,10 +233,6 @@ def _size(value: acb) -> arb:
     return value.real * value.real + value.imag * value.imag
 
 
-def _exponent(value: Fraction) -> int:
-    return abs(value.numerator).bit_length() - value.denominator.bit_length()
-
-
 def _times_power(value: Fraction, shift: int) -> int:
     return round(value * (1 << shift)) if shift >= 0 else round(value / (1 << -shift))
 
@@ -263,7 +259,7 @@ def _below(value: Callable[[Fraction], arb], degree: int, bits: int) -> tuple[fm
         largest = max(map(abs, coefficients))
         if not largest:
             return fmpz_poly([0]), 0
-        shift = 2 * _ROOM - _exponent(largest)
+        shift = 2 * _ROOM - (abs(largest.numerator).bit_length() - largest.denominator.bit_length())
         whole = [_times_power(c, shift) for c in coefficients]
     whole[0] -= 1 << _ROOM
     return fmpz_poly(whole), shift

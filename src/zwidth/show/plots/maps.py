@@ -124,20 +124,6 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     return figure
 
 
-def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
-    """The same on given axes, the whole map and no close-up.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    found
-        What `zwidth.z_width` returned.
-    """
-    _draw(axes, _told(found))
-    legend(axes)
-
-
 def _draw(axes: Axes, found: xr.Dataset) -> None:
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
@@ -263,22 +249,7 @@ _DRAWN = ("max_stiffness", "proved_passive", "energy_extracted")
 
 
 def save_sweep(found: xr.Dataset, path: str | Path, overwrite: bool = False) -> None:
-    """Write `sweep_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Parameters
-    ----------
-    found
-        What `zwidth.sweep` returned.
-    path
-        The file to write.
-    overwrite
-        Replace a file that is already there.
-
-    Raises
-    ------
-    InputError
-        If the ending is another one, the file exists or cannot be written, or `found` is no sweep.
-    """
+    """Write `sweep_figure` of what `zwidth.sweep` returned, as `save_z_width` writes a map."""
     save_figure(lambda: sweep_figure(found), path, overwrite)
 
 

@@ -76,15 +76,7 @@ def plot_pair(verdict: PairVerdict) -> Figure:
 
 
 def draw_pair_damping(axes: Axes, verdict: PairVerdict) -> None:
-    """Damping of the follower that is enough beside that of the leader, at this stiffness and link.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    verdict
-        What `zwidth.check` returned of a `zwidth.Pair`.
-    """
+    """Damping of the follower that is enough beside that of the leader, at this stiffness and link."""
     factor, unit = drawn_in("damping", verdict.pair.motion)
     leader, follower = (factor * side for side in damping_boundary(verdict.pair))
     here = [factor * float(side.damping) for side in verdict.pair.sides]
@@ -132,15 +124,7 @@ def damping_boundary(pair: Pair) -> tuple[Array, Array]:
 
 
 def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
-    """The largest passive stiffness against the delay of the link: it falls with every sample.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    verdict
-        What `zwidth.check` returned of a `zwidth.Pair`.
-    """
+    """The largest passive stiffness against the delay of the link: it falls with every sample."""
     pair = verdict.pair
     delays, stiffness = link_limits(pair)
     which = "each way" if pair.there == pair.back else "mean of there and back"
@@ -203,12 +187,7 @@ def _mark(axes: Axes, verdict: PairVerdict, x: float, y: float) -> None:
 def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
     """Positions of both hands in the motion that takes energy out, each repeated part once.
 
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    verdict
-        What `zwidth.check` returned of a `zwidth.Pair` that is active.
+    Of a verdict that is active.
     """
     found = verdict.witness
     assert found is not None
@@ -230,12 +209,7 @@ def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
 def draw_pair_energy(axes: Axes, verdict: PairVerdict) -> None:
     """What has come out of both hands' motion by each instant, every round of it: exact sums.
 
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    verdict
-        What `zwidth.check` returned of a `zwidth.Pair` that is active.
+    Of a verdict that is active.
     """
     found = verdict.witness
     assert found is not None

@@ -59,17 +59,7 @@ def size_of(scene: Scene) -> tuple[float, float]:
 
 
 def draw_scene(axes: Axes, scene: Scene, motion: str = "linear") -> None:
-    """The same on axes of one's own.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    scene
-        What is drawn.
-    motion
-        "linear" or "rotary", for the units.
-    """
+    """The same on axes of one's own."""
     places = placed(scene)
     labelled = len(scene.elements) <= _MOST_LABELS
     beside: dict[frozenset[str], int] = {}

@@ -81,17 +81,7 @@ def _fit(figure: Figure) -> None:
 
 
 def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) -> None:
-    """Draw one variable of the map on axes of your own.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    space
-        What `zwidth.workspace` returned.
-    variable
-        A name in `space.data`. Default "margin", of a wall in pose "margin_in_joints".
-    """
+    """The same on axes of your own."""
     least = "margin" if "margin" in space.data else "margin_in_joints"
     variable = least if variable is None else variable
     if variable not in space.data:

@@ -192,11 +192,8 @@ def on_processes(compute: Compute, ready: Any, places: list[Place], workers: int
 
 def on_cluster(compute: Compute, ready: Any, places: list[Place], address: str) -> Finished:
     """Each chunk as it is finished, on the workers of the Dask scheduler at an address."""
-    try:
-        import distributed
-    except ImportError:
-        raise installing.needed("Dask, which a cluster needs,", "maps", otherwise="give no address") from None
-    dask: Any = distributed
+    needs = "Dask, which a cluster needs,"
+    dask = installing.imported("distributed", needs, "maps", "give no address")
     try:
         client: Any = dask.Client(address, timeout=_TIMEOUT)
     except (OSError, ValueError, ImportError) as error:

@@ -97,11 +97,8 @@ def say(path: Path, layout: Layout, told: Mapping[str, Any]) -> None:
 
 
 def _opened(path: Path, layout: Layout) -> Any:
-    try:
-        import zarr
-    except ImportError:
-        what = f"zarr, which a {layout.what} on disk needs,"
-        raise installing.needed(what, "maps", otherwise="give no file") from None
+    what = f"zarr, which a {layout.what} on disk needs,"
+    zarr = installing.imported("zarr", what, "maps", "give no file")
     with _on_disk(path, layout):
         if path.exists() and any(path.iterdir()):
             return _resumed(zarr, path, layout)

@@ -136,11 +136,7 @@ def _read_parquet(path: Path) -> tuple[xr.Dataset, str]:
 
 
 def _read_zarr(path: Path) -> tuple[xr.Dataset, str]:
-    try:
-        import zarr
-    except ImportError:
-        raise installing.needed(f"zarr, which reads {path},", "maps") from None
-    group: Any = zarr.open_group(path, mode="r")
+    group = installing.imported("zarr", f"zarr, which reads {path},", "maps").open_group(path, mode="r")
     _refuse_foreign(path, group.attrs.get("format"))
     told = group.attrs.get("told")
     if told is None:

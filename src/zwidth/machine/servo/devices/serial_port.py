@@ -39,10 +39,7 @@ def open_port(port: str, baud: int) -> Any:
     that only look like serial ports ignore it [1/s].
     """
     check_supported()
-    try:
-        serial: Any = importlib.import_module("serial")
-    except ImportError:
-        raise installing.needed("pyserial, which opens serial ports,", "serve") from None
+    serial = installing.imported("serial", "pyserial, which opens serial ports,", "serve")
     try:
         opened = serial.Serial(port, baud, timeout=0, write_timeout=0, inter_byte_timeout=0, exclusive=True)
     except (serial.SerialException, ValueError, OSError) as error:

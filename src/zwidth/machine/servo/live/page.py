@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import importlib
 import re
 from collections.abc import Callable, Collection
 from ipaddress import ip_address
@@ -114,10 +113,7 @@ def _is_address(host: str, port: int) -> bool:
 
 def library(module: str, name: str) -> Any:
     """A module of the extra `serve` that may be missing; `name` as its makers write it."""
-    try:
-        return importlib.import_module(module)
-    except ImportError:
-        raise installing.needed(name, "serve", otherwise="watch in the terminal") from None
+    return installing.imported(module, name, "serve", "watch in the terminal")
 
 
 def bound(port: int) -> tuple[list[Any], int]:

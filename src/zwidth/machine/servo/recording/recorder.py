@@ -255,7 +255,7 @@ class McapFile:
         self._give(layout.MAGIC + described)
         said = head.text()
         self._say(layout.HEAD, {"json": said, "crc32": str(crc32(said.encode()))})
-        self._give(_described(head))
+        self._give(_schemas(head) + _channels())
 
     @property
     def size(self) -> int:
@@ -362,10 +362,6 @@ def _channels() -> bytes:
         record(layout.CHANNEL, pack("<HH", number, number) + text(topic) + text("cdr") + _table({}))
         for number, topic in ((_OF_ROWS, layout.ROWS), (_OF_EVENTS, layout.EVENTS))
     )
-
-
-def _described(head: Head) -> bytes:
-    return _schemas(head) + _channels()
 
 
 def _messages(rows: Array, taken: NDArray[np.int64], head: Head, before: int) -> NDArray[Any]:
