@@ -113,7 +113,6 @@ def test_the_unit_of_a_range_is_of_both_its_ends(run):
         (f"compare wheel.toml {RIM} --law extrapolation", "the bench touches the rim"),
         ("simulate wheel.toml --operator hands-off --duration 1", "--initial-velocity '360 deg/s'"),
         (f"simulate haptic-paddle --stiffness 300 {HANDS}", "holds a device that turns"),
-        ("plan wheel.toml --force-noise 1", "takes a device alone"),
         (f"map other.toml {MAP}", "a map is of walls"),
         ("check moza-r9 --stiffness '2 N*m/deg' --law force-bounding", "give yours, --delay '1 ms'"),
         (f"simulate moza-r9 --stiffness 1 {HANDS}", "zwidth check moza-r9"),

@@ -144,9 +144,9 @@ def test_what_cannot_be_is_one_message(refused, head, argv, says):
 
 
 def test_two_columns_that_may_be_the_force_are_not_chosen_between(run, refused):
-    write("time_s,z_mm,force_1_N,force_2_N", columns()[:, [0, 1, 2, 2]])
-    assert "--column force=force_1_N" in refused("tissue a.csv")
-    run(f"tissue a.csv {ONE} --column force=force_2_N")
+    write("time_s,z_mm,force_tip_N,force_base_N", columns()[:, [0, 1, 2, 2]])
+    assert "--column force=force_tip_N" in refused("tissue a.csv")
+    run(f"tissue a.csv {ONE} --column force=force_base_N")
 
 
 def test_a_workbook_and_a_device_by_its_parameters(run, refused):

@@ -8,6 +8,7 @@ import pytest
 import zwidth as zw
 from zwidth.loop.energy import ledger
 from zwidth.model.rendering import PassivityController
+from zwidth.quantity.text import shown
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 SPRING = zw.PulseTransferFunction(["100", 0], [1, 0])
@@ -119,7 +120,7 @@ def test_the_touch_starts_where_the_law_is_at_rest():
     for law, place in expected:
         trace = zw.simulate(PADDLE.replace(damping=1), law, finger, 0.1)
         assert float(trace.position[0]) == pytest.approx(place, abs=1e-15)
-        assert f"start {float(trace.position[0]):.6g} m" in trace.attrs["operator"]
+        assert f"start {shown(float(trace.position[0]), 'm', 6)}" in trace.attrs["operator"]
         assert float(trace.anchor_position[0]) == float(trace.position[0])
         assert trace.attrs["stored_at_start_J"] < 1e-6
 

@@ -12,7 +12,7 @@ NUMBERS = {
     "plot_adaptive_tissue": "taken out: naive 2.37 mJ, adaptive 0.00 mJ",
     "plot_bounded_hands": "every hand: 300 N/m; hands up to 0.5 m/s: 747 N/m",
     "plot_bouncing_ball": "after 3 strikes the ball comes back 12.37 times as far as it started",
-    "plot_buzz_or_bounce": "active tactile: largest passive stiffness 107.1 N/m",
+    "plot_buzz_or_bounce": "quantization against Coulomb friction: largest passive stiffness 107.1 N/m",
     "plot_contact_with_memory": "fed with the position: active at 1.84 of the linear criterion's damping",
     "plot_coupling": "one sample late: 115.5 N/m, a spring alone 75.0 N/m",
     "plot_creep_relaxation": "relaxation time 0.200 s, retardation time 0.333 s",

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.options import overrides
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 
 if TYPE_CHECKING:
     from zwidth.model.device import Device

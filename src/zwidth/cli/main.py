@@ -18,8 +18,9 @@ from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.output import print_message, quiet_pipe, tolerate_encoding
 from zwidth.cli.parsing import Help, as_typed, joined
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device.transmission import NOT_OF_IT
-from zwidth.model.specification.table import plain, quoted, suggestion
+from zwidth.model.specification.table import plain, quoted
 from zwidth.quantity.spoken import answers_as_typed
 
 BAD_INPUT = 2

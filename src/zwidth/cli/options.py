@@ -14,13 +14,14 @@ from typing import Any
 
 from zwidth.cli.parsing import Parameter, dest_of
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device import Transmission
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, option_keys
 from zwidth.model.specification.read import DEVICE_KEYS
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.model.specification.values import BETWEEN
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.parameter import parameters_of

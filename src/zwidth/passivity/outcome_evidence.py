@@ -134,12 +134,17 @@ def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
 def _active(verdict: Found, advice: Iterable[Advice]) -> str:
     is_replayed = verdict.scope.transmission == "as given"  # no motion of two bodies is more than that
     if verdict.witness is not None and not is_replayed:
-        return with_what_to_do(f"{claim_of_a_motion(verdict.witness)}{_at(verdict)}", advice, "active")
+        return with_what_to_do(f"{_taken(verdict.witness)}{_at(verdict)}", advice, "active")
     assert verdict.violation is not None
     any_amount = f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
     return with_what_to_do(f"{any_amount}{_at(verdict)}", advice, "active") + (
         "" if is_replayed else f" {UNWRITTEN}"
     )
+
+
+def _taken(moved: Moves) -> str:
+    lasts = moved.motion.samples * moved.sample_period
+    return claim_of_a_motion(moved.energy, lasts, moved.depth, moved.peak_speed, moved.unit)
 
 
 def _at(verdict: Found) -> str:
@@ -244,7 +249,7 @@ def _undecided(verdict: Found) -> str:
     if verdict.finding == "depends on values":
         found, moved = verdict.violation or verdict.motion, verdict.witness
         assert found is not None
-        gains = found.describe() if moved is None else claim_of_a_motion(moved).replace("A ", "a ", 1)
+        gains = found.describe() if moved is None else _taken(moved).replace("A ", "a ", 1)
         return (
             f"Active for some values of its intervals: at {where_active(verdict)} {gains}. Of other values "
             "in them that is not known."

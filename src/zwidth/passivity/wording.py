@@ -6,7 +6,7 @@ Nothing reads these sentences again: whoever needs a fact takes it from the reco
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from zwidth.passivity.scope import (
     Contact,
@@ -22,9 +22,6 @@ from zwidth.passivity.scope import (
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
-
-if TYPE_CHECKING:
-    from zwidth.passivity.outcome_evidence import Moves
 
 NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
 
@@ -174,11 +171,12 @@ def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
 UNWRITTEN = "No motion that shows it was found short enough to be written down."
 
 
-def claim_of_a_motion(moved: Moves) -> str:
-    """The sentence of a motion that takes energy out, without its point."""
-    beyond = is_beyond_hands(moved.depth, moved.peak_speed, moved.unit)
-    taken = takes("the hand", moved.energy, "loop", moved.motion.samples * moved.sample_period)
-    return f"{taken}{', although it is more than any hand does' if beyond else ''}"
+def claim_of_a_motion(energy: float, seconds: float, depth: float, speed: float, unit: str) -> str:
+    """The sentence of a motion that takes energy out [J; s; m, m/s or rad, rad/s], without its point."""
+    taken = takes("the hand", energy, "loop", seconds)
+    return (
+        f"{taken}{', although it is more than any hand does' if is_beyond_hands(depth, speed, unit) else ''}"
+    )
 
 
 def takes(whose: str, energy: float, out_of: str, seconds: float) -> str:

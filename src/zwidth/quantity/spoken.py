@@ -60,7 +60,7 @@ def answers_in(*units: str) -> Iterator[None]:
     unknown = [unit for unit in units if unit not in ANGLES]
     if unknown:
         raise InputError(f"an angle is told in rad, deg or turn, a speed also in rpm; got {unknown[0]!r}")
-    with _noting({(0, unit) for unit in units}):
+    with _noting({(2, unit) for unit in units}):
         yield
 
 

@@ -78,7 +78,7 @@ def test_a_criterion_that_all_but_touches_zero_is_undecided():
     assert loop.criterion.degree() == 110
     verdict = zw.check(device, law)
     assert verdict.outcome == "undecided"
-    assert "so close to zero" in verdict.claim
+    assert "so close to its limit" in verdict.claim
     assert verdict.required_damping == pytest.approx(1e12)
     more = zw.check(device.replace(damping=2 * 10**12), law)
     assert more.outcome == "passive"

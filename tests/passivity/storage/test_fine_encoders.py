@@ -187,7 +187,7 @@ def test_the_way_in_is_as_slow_as_the_hand():
     program = program_of(loop, zw.Wall(7600), "8e-5", "0.0262")
     motion = program.refute(1024)
     assert motion.peak_speed <= 0.0262
-    assert f"{motion.peak_speed:.4g} m/s" in motion.describe()
+    assert f"{1e3 * motion.peak_speed:.4g} mm/s" in motion.describe()
 
 
 def test_this_hand_is_never_worse_than_every_hand():

@@ -94,4 +94,9 @@ def test_hands_of_finite_stiffness_are_sent_to_the_simulator():
 def test_the_picture_has_the_band_and_the_motion():
     figure = zw.plots.check_figure(zw.check(device("28657"), zw.Wall(140)))
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["distance from the circle's middle [radii]", "x [mm]", "f [mN]", "energy out [mJ]"]
+    assert labels == [
+        "distance from the circle's middle [radii]",
+        "position x\n[mm]",
+        "force f\n[mN]",
+        "energy out\n[mJ]",
+    ]

@@ -13,9 +13,10 @@ from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact,
 from zwidth.cli.output import give_out, print_message, targets
 from zwidth.cli.parsing import dest_of
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device.catalogue import PROPERTIES
 from zwidth.model.specification.environments import option_keys
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 

@@ -26,8 +26,8 @@ from zwidth.cli.page import below, grid, page
 from zwidth.cli.page import headline as badge
 from zwidth.cli.parsing import heed_angles
 from zwidth.errors import InputError
-from zwidth.missing import did_you_mean
-from zwidth.model.specification.table import plain, quoted, suggestion
+from zwidth.missing import did_you_mean, suggestion
+from zwidth.model.specification.table import plain, quoted
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 

@@ -11,7 +11,8 @@ from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
 from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any, TextIO
 from zwidth.cli.options import environment_parameters, overrides
 from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.specification.laws import with_laws
 from zwidth.model.specification.read import WITH_LAWS, read_tables, specified
-from zwidth.model.specification.table import plain, quoted, suggestion
+from zwidth.model.specification.table import plain, quoted
 
 if TYPE_CHECKING:
     from zwidth.machine.servo import Servo

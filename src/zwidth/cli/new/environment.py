@@ -12,10 +12,11 @@ from zwidth.cli.new.device_questions import MOTION, NEEDED, motion_of
 from zwidth.cli.new.questions import Asker, Question, Row, Written, need_unit, table, understood, with_unit
 from zwidth.cli.output import print_text
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device import Device
 from zwidth.model.environment import NonlinearSpring, Wall
 from zwidth.model.specification.read import load_device, read_tables
-from zwidth.model.specification.table import Table, quoted, suggestion
+from zwidth.model.specification.table import Table, quoted
 from zwidth.quantity.exact import ends
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown

@@ -10,7 +10,8 @@ from zwidth.cli.new import device, environment
 from zwidth.cli.new.questions import Asker, Written
 from zwidth.cli.output import check_new, print_text, quiet_pipe, say_written
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.showing import printable
 from zwidth.writing import writing_whole
 

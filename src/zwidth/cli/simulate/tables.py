@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from zwidth.cli.parsing import Parameter
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device import amplifier as amplifiers
 from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.environment import Wall
@@ -27,7 +28,7 @@ from zwidth.model.operator import (
     RecordedForce,
     WitnessMotion,
 )
-from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
+from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.units import parse_number
 

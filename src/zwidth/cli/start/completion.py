@@ -14,7 +14,8 @@ from types import MappingProxyType
 
 from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 
 SHELLS = ("bash", "zsh", "fish")
 

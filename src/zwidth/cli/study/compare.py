@@ -12,8 +12,9 @@ from zwidth.cli.decision import of_one_value
 from zwidth.cli.options import IN_FULL, LAW, PARAMETERS, output, overrides
 from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.specification.laws import with_laws
-from zwidth.model.specification.table import Table, quoted, suggestion
+from zwidth.model.specification.table import Table, quoted
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part
 

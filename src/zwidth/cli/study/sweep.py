@@ -26,8 +26,9 @@ from zwidth.cli.output import PICTURES, print_found, print_message, target
 from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import operator_parameters, simulation_parameters
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.specification.environments import option_keys
-from zwidth.model.specification.table import COMMAND_LINE, plain, quoted, suggestion
+from zwidth.model.specification.table import COMMAND_LINE, plain, quoted
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:

@@ -28,8 +28,9 @@ from typing import Any
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.data.gains.joint import JointGains
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device import Device
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.model.specification.values import joint_transmissions
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY

@@ -11,7 +11,8 @@ from zwidth.data.gains.arms import ArmGains
 from zwidth.data.gains.families import FEETECH, I2RT, LEROBOT, OPENARM, PIPER
 from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number
 

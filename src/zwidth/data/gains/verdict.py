@@ -13,7 +13,8 @@ from zwidth.data.gains.best import best, passive_compensation, required_damping,
 from zwidth.data.gains.joint import CoupledJoint, JointGains
 from zwidth.data.gains.plant import GivenPlant
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.passivity.pairs.limits import samples_around
 from zwidth.passivity.result import least

@@ -17,9 +17,9 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device.device import Device, Motion
 from zwidth.model.device.rotary import ROTARY, rotary
-from zwidth.model.specification.table import suggestion
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of

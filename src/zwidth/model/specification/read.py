@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from zwidth.errors import InputError
-from zwidth.missing import did_you_mean, near_file
+from zwidth.missing import did_you_mean, near_file, suggestion
 from zwidth.model.device import Device, Transmission, catalogue
 from zwidth.model.device.catalogue import Range
 from zwidth.model.device.rotary import ROTARY, rotary
 from zwidth.model.environment import Environment
 from zwidth.model.specification.environments import build_environment, option_keys
 from zwidth.model.specification.laws import NOT_PROVED, ROW
-from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
+from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted
 from zwidth.model.specification.values import BETWEEN, transmission_of
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY

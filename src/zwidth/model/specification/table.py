@@ -6,12 +6,12 @@ came from the command line, even after the two were merged.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.showing import one_line
 
 if TYPE_CHECKING:
@@ -102,42 +102,3 @@ def plain(text: str, longest: int = 60) -> str:
 def quoted(text: str) -> str:
     """The same in quotes."""
     return f'"{plain(text)}"'
-
-
-def suggestion(text: str, known: Iterable[str], option: str = "", more: str = "") -> str:
-    """What may have been meant, as a key or an `option`, or else `more`: everything that is possible."""
-    names = list(known)
-    if found := _called(text.lower().replace("-", "_"), names) or get_close_matches(text[:60], names, n=1):
-        written = (option.format(one.replace("_", "-")) if option else quoted(one) for one in found)
-        return f"did you mean {' or '.join(written)}?"
-    return more or f"it may be: {', '.join(names)}"
-
-
-def _called(word: str, known: Sequence[str]) -> list[str]:
-    """Of what people call so the keys that are known here; of keys between bars the first."""
-    part, dot, last = word.rpartition(".")  # of a cable, transmission.friction
-    before = part + dot
-    for keys, words in _WORDS.items():
-        if last in words.split():
-            each = ([before + one for one in either.split("|")] for either in keys.split())
-            found = ([one for one in either if one in known] for either in each)
-            return [one[0] for one in found if one]
-    return []
-
-
-_WORDS = {
-    "handle_damping|damping handle_coulomb_friction|coulomb_friction": "friction",
-    "handle_damping|damping": "viscous viscosity viscous_friction viscous_damping device_damping",
-    "coulomb_friction": "coulomb dry_friction static_friction",
-    "counts_per_turn resolution": "counts ppr cpr counts_per_rev counts_per_revolution pulses_per_revolution",
-    "resolution counts_per_turn": "encoder encoder_resolution position_resolution",
-    "delay": "latency lag dead_time time_delay",
-    "force_limit": "max_torque max_force torque_limit maximum_torque maximum_force peak_torque peak_force",
-    "rate cutoff": "frequency sample_rate sampling_rate sample_frequency loop_rate update_rate fs",
-    "sample_period": "dt time_step sample_time sampling_time",
-    "stiffness": "k kp spring spring_constant spring_stiffness wall_stiffness",
-    "virtual_damping|damping local_damping": "kd damper",
-    "damping virtual_damping": "b",
-    "virtual_damping": "damping wall_damping",
-}
-"""What people call a quantity, by the keys that it has here."""

@@ -14,10 +14,11 @@ from types import MappingProxyType
 from typing import Any
 
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device.transmission import NOT_OF_IT, Transmission, motion_told
 from zwidth.model.environment import BackwardDifference, OnePole, VelocityFilter, Window
 from zwidth.model.environment.velocity import VelocityEstimator
-from zwidth.model.specification.table import Table, located, quoted, suggestion
+from zwidth.model.specification.table import Table, located, quoted
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parameter, parameters_of, read_number

@@ -74,7 +74,10 @@ class AvailableStorage(PassivityAnswer):
         if self.outcome == "passive":
             return f"{claim_of_passivity(self.scope, False)}."
         if self.witness is not None:
-            return f"{claim_of_a_motion(self.witness)}."
+            moved = self.witness
+            lasts = moved.motion.samples * moved.sample_period
+            claim = claim_of_a_motion(moved.energy, lasts, moved.depth, moved.peak_speed, moved.unit)
+            return f"{claim}."
         if self.cut_by_time:
             return "Neither a proof nor a motion was found before the time given was over: more may decide."
         return "Neither a proof nor a motion was found: finer steps, or more effort, may decide."

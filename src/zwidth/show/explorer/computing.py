@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.environment import Environment, Wall
 from zwidth.model.operator import OPERATORS, ParametricOperator
 from zwidth.model.operator.named import usual_kind
 from zwidth.model.specification.load import pair_of
 from zwidth.model.specification.read import Specification
-from zwidth.model.specification.table import Table, quoted, suggestion
+from zwidth.model.specification.table import Table, quoted
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.linear.loop import linear_loop
 from zwidth.passivity.linear_verdict import LinearVerdict

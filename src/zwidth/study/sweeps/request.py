@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.model.specification.table import quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import quoted
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.study.chunks.layout import Layout, Place, cells
 from zwidth.study.sweeps.axes import OF_EVERY_SWEEP, Axis, Columns, axis

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import Connection
-from zwidth.model.specification.table import Table, located, quoted, suggestion
+from zwidth.missing import suggestion
+from zwidth.model.specification.table import Table, located, quoted
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import read_number
 
