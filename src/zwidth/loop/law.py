@@ -10,9 +10,8 @@
     f   = law(x_m, f)                   one after the other, where laws render the environment
     f   = ΔF round(f/ΔF), |f| ≤ F_max   what the converter makes of it
 
-A wall's velocity estimator runs on every measured position; a viscoelastic
-solid, which can be left, on the penetration max(x_m, 0).  Neither pushes where
-x_m ≤ 0.
+A wall's velocity estimator runs on every measured position; a viscoelastic solid, which can be left, on the
+penetration max(x_m, 0).  Neither pushes where x_m ≤ 0.
 """
 
 from __future__ import annotations

@@ -10,8 +10,7 @@ a hand that moves ξ counts in one sample loses at least
 
     K Δ² ξ [(β − ½) ξ + (σ − ½)]
 
-against the spring ½ K (x − Δ/2)² (derived for this project, see
-`admissible_speed`).
+against the spring ½ K (x − Δ/2)² (derived for this project, see `admissible_speed`).
 """
 
 from __future__ import annotations
@@ -44,9 +43,8 @@ class PlanePoint(NamedTuple):
     def region(self) -> Region:
         """Where the point lies (Diolaiti, Niemeyer, Barbagli & Salisbury 2006).
 
-        "globally stable" (passive, edges included), "limit cycles" (small
-        motions gain energy, large ones lose it), "locally stable" (the reverse),
-        "globally unstable".
+        "globally stable" (passive, edges included), "limit cycles" (small motions gain energy, large ones
+        lose it), "locally stable" (the reverse), "globally unstable".
         """
         fast, small = _at_least_half(self.viscous), _at_least_half(self.dry)
         if fast:
@@ -56,9 +54,8 @@ class PlanePoint(NamedTuple):
     def cycle_loss(self, step: RealLike, start: Start = "inside") -> Exact | float:
         """W/(2 K Δ² ξ) = (β − ½) ξ + σ − ½, or (β − ½) ξ + σ from the surface.
 
-        W is what the hand loses by one sample in and one sample out: "inside"
-        from just below one edge to just past the last, "surface" from x = 0 to
-        ξ Δ.  Negative where the cycle gains energy.
+        W is what the hand loses by one sample in and one sample out: "inside" from just below one edge to
+        just past the last, "surface" from x = 0 to ξ Δ.  Negative where the cycle gains energy.
 
         Parameters
         ----------

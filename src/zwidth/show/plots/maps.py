@@ -1,7 +1,6 @@
 """The plane of walls: what is passive, what is quiet, what is stable in which hand.
 
-Regions are those of the map; the boundary of each is drawn and named, so that no meaning
-hangs on a colour.
+Regions are those of the map; the boundary of each is drawn and named, so that no meaning hangs on a colour.
 """
 
 from __future__ import annotations

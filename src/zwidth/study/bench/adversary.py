@@ -2,9 +2,8 @@
 
     gain = −∮ f_h dx      per round, once the law has settled to the motion
 
-A fixed set of motions and what is found against the wall alone; up to the speed of a hand, and
-where nothing gains, faster.  A gain is a witness, replayed in the simulator before it is told; no
-gain is no proof.
+A fixed set of motions and what is found against the wall alone; up to the speed of a hand, and where nothing
+gains, faster.  A gain is a witness, replayed in the simulator before it is told; no gain is no proof.
 """
 
 from __future__ import annotations
