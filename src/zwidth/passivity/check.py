@@ -298,7 +298,6 @@ def _passive(
 
 
 def _also(certificate: Certificate, law: Environment) -> tuple[Also, ...]:
-    """What else a proof of this kind covers."""
     if certificate.is_of_springs:
         return ("springs",)
     return ("clamped",) if certificate.kind == "contact" and not law.clamped else ()

@@ -310,7 +310,6 @@ def _losses(scope: Scope) -> Iterator[str]:
 
 
 def _measured(scope: Scope) -> str:
-    """Up to which speed."""
     if scope.friction_speed is None:
         return ""
     speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)

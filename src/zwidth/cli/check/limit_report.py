@@ -51,7 +51,6 @@ def print_bracket(bracket: Bracket, loop: Specification, in_full: bool = False) 
 
 
 def _all(out: Console, bracket: Bracket, loop: Specification) -> None:
-    """Everything, the small print last."""
     fancy = encodes(PICTURE)
     out.print(below(grid(_loop(bracket, loop))))
     out.print(below(_values(bracket)))

@@ -123,7 +123,6 @@ def _assumed(verdict: Verdict) -> Text:
 
 
 def _all(out: Console, verdict: Verdict, over_ranges: bool) -> None:
-    """Everything, the small print last."""
     fancy = encodes(PICTURE)
     out.print(below(grid(_loop(verdict, over_ranges))))
     out.print(_numbers(verdict))

@@ -108,7 +108,6 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
 
 
 def _law_as_stated(change: Change) -> list[str]:
-    """What differs from the law that was given."""
     if change.parameter not in ("stiffness", "damping"):
         return []
     return [_OPTIONS[change.parameter], _with_unit(change.to, change.parameter, change.device.motion)]

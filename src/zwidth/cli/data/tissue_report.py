@@ -106,7 +106,6 @@ def _columns(lines: Sequence[Sequence[str]]) -> Table:
 
 
 def _models(test: TissueTest) -> str:
-    """What was tried, in a line."""
     others = [
         f"{name} {above - test.criteria[test.chosen]:+.3g}"
         for k, (name, above) in enumerate(zip(test.names, test.criteria, strict=True))
@@ -140,7 +139,6 @@ def _scale(bracket: Bracket, kept: Bracket | None) -> str:
 
 
 def _assumed(test: TissueTest) -> Iterator[str]:
-    """What the intervals rest on."""
     response = "depth" if test.test.kind == "creep" else "force"
     given = "force" if test.test.kind == "creep" else "depth"
     memory = test.tried[test.chosen].found.noise.memory

@@ -126,7 +126,6 @@ class Asker:
             )
 
     def _checked(self, question: Question, answer: str, where: str) -> tuple[str | None, str]:
-        """The answer, and what to say of it."""
         answer = answer or question.enter
         if answer.lower() in _UNKNOWN:
             return None, question.unknown

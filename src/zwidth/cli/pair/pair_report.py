@@ -70,7 +70,6 @@ def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness 
 
 
 def _all(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> None:
-    """Everything, the small print last."""
     out.print(below(grid(_arms(verdict.pair))))
     out.print(below(grid(_numbers(verdict))))
     if witness is not None:
@@ -102,7 +101,6 @@ def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Te
 
 
 def _motion_in_short(witness: PairWitness | HeldWitness) -> str:
-    """How long it is, and what comes out."""
     return f"{_how_long(witness)} takes {shown(witness.energy, 'J')} out"
 
 

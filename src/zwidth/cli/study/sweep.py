@@ -131,7 +131,6 @@ def _draw(found: xr.Dataset, plot: Path) -> None:
 
 
 def _varied(typed: list[str] | None) -> dict[str, str]:
-    """Names and values as they were typed."""
     if not typed:
         raise InputError("nothing is varied: say what and over which values, --vary stiffness=100:3000:50")
     found: dict[str, str] = {}
@@ -244,7 +243,6 @@ def _refuse_others(arguments: argparse.Namespace, of: str) -> None:
 
 
 def _parameters(of: str) -> Iterable[Parameter]:
-    """The parameters that a question has."""
     from zwidth.cli.simulate.tables import operator_parameters, simulation_parameters
 
     if of == "pair":

@@ -80,7 +80,6 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
 
 
 def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
-    """What the verdict is about."""
     yield "arm", arm_in_words(space.arm, 1 / space.sample_period)
     yield "joint damping", damping_in_words(space.arm)
     yield "region", space.region

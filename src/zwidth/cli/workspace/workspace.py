@@ -130,7 +130,6 @@ def _give_out(
 
 
 def _verdict(arguments: argparse.Namespace) -> Workspace:
-    """The verdict that is asked for."""
     from zwidth.passivity.workspace import workspace
 
     arm = arm_of(arguments)
@@ -196,7 +195,6 @@ def _check_gains(arguments: argparse.Namespace, save: Path | None) -> None:
 
 
 def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
-    """The impedance that is written."""
     from zwidth.data.gains import borne_impedance
 
     return borne_impedance(
@@ -231,7 +229,6 @@ def _save(space: Workspace | PostureMap, path: Path) -> None:
 
 
 def _largest(text: str | None, option: str) -> list[float] | None:
-    """A force, and in pose a moment."""
     if text is None:
         return None
     parts, units = text.split(","), ("N", "N*m")

@@ -210,7 +210,6 @@ class _Joint:
         return proved
 
     def _lacking(self) -> str:
-        """Why no spring is."""
         if self.device.exact("resolution") and not self.device.exact("coulomb_friction"):
             return (
                 f"encoder steps of {shown(self.device.resolution, 'rad')} take Coulomb friction, and none "

@@ -129,7 +129,6 @@ class BestMoves(Sweep):
         return improved
 
     def _states(self, block: tuple[int, int]) -> slice:
-        """Where the states of a block are."""
         first, last = block
         return slice(first * self._in_a_group, last * self._in_a_group)
 

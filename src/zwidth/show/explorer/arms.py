@@ -36,7 +36,6 @@ class Arms:
         page.listen(self.form, self.hear)
 
     def _moved(self) -> None:
-        """The device is another."""
         self._page.state = with_coupling(self._page.state)
         try:
             verdict = pair_verdict(self._page.state)

@@ -252,7 +252,6 @@ def _environments(state: State) -> dict[str, Any]:
 
 
 def _boxes(state: State) -> list[dict[str, Any]]:
-    """Every law, on or off."""
     on = {str(law["type"]) for law in state.laws}
     return [flag(f"with.{name}", _spoken(name), law.meaning, name in on) for name, law in LAWS.items()]
 

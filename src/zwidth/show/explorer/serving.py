@@ -100,7 +100,6 @@ class _Server:
         self._serving = Serving(sockets, self._made, "zwidth explorer")
 
     def _made(self) -> tuple[Any, Callable[[], None]]:
-        """A server of Bokeh, and what ends it."""
         for name in ("bokeh.server.views.ws", "tornado.access"):
             logging.getLogger(name).setLevel(logging.CRITICAL)  # what a browser does is not worth a line
         access = NullAuth() if self._token is None else TokenAccess(self._token, f"zwidth_{self._port}")
@@ -119,7 +118,6 @@ class _Server:
         return http, server.stop
 
     def _make(self) -> Template:
-        """The page of a new browser."""
         if self._open >= self._most:
             return full_page(self._most)
         document = panel_state.curdoc

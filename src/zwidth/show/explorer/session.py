@@ -207,7 +207,6 @@ class Session:
         self.compute("verdict", judged_in_full, self._come)
 
     def _come(self, answer: Answer) -> None:
-        """What took longer has come."""
         if answer.value is not None:
             self.verdict = answer.value
         self._say(answer.message)

@@ -129,7 +129,6 @@ def _advice(verdict: Verdict) -> Html:
 
 
 def _scope(verdict: Verdict) -> Html:
-    """What the claim covers and takes for granted."""
     return Lines(verdict.small_print(), "What this covers").html
 
 

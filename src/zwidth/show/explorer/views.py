@@ -352,7 +352,6 @@ def _drawn_of(state: State) -> tuple[object, ...]:
 
 
 def _controls_of(hand: ParametricOperator, motion: str) -> list[Control]:
-    """The numbers of a hand on sliders."""
     return [
         number_control(f"operator.{name}", own, getattr(hand, name), motion, in_words(name))
         for name, own in parameters_of(type(hand)).items()

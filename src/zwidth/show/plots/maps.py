@@ -172,7 +172,6 @@ def _sustained(found: xr.Dataset) -> tuple[tuple[str, str, float, str], ...]:
 
 
 def _edges(middles: Array) -> Array:
-    """The edges of equal cells from their middles."""
     half = (middles[1] - middles[0]) / 2 if len(middles) > 1 else 0.5
     return np.append(middles - half, middles[-1] + half)
 

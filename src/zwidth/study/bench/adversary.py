@@ -218,7 +218,6 @@ def _player(device: Device, law: Environment) -> Play:
 
 
 def _taken(device: Device, environment: Environment, positions: Floats, rounds: int) -> _Played:
-    """The same by the simulator."""
     path = _listed(positions, rounds)
     period = device.motor_side.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)

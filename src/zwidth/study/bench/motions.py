@@ -131,7 +131,6 @@ def _stiffnesses(device: Device, environment: Environment) -> tuple[Fraction, ..
 
 
 def _step_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
-    """ΔF/K, where the encoder is not coarser."""
     if device.force_resolution is None:
         return []
     depths = [device.exact("force_resolution") / stiffness for stiffness in stiffnesses]
@@ -139,7 +138,6 @@ def _step_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Frac
 
 
 def _limit_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
-    """F/K."""
     if device.force_limit is None:
         return []
     return [device.exact("force_limit") / stiffness for stiffness in stiffnesses]

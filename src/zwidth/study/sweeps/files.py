@@ -224,7 +224,6 @@ def _ranges(asked: Request) -> Environment:
 
 
 def _why(asked: Request, place: tuple[int, ...]) -> str:
-    """Why a loop cannot be."""
     values = ", ".join(own.told(own.values[n]) for own, n in zip(asked.axes, place, strict=True))
     try:
         asked.question.answer(asked.at(place), {})

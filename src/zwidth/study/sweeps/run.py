@@ -145,7 +145,6 @@ def _told(asked: Request, found: xr.Dataset) -> dict[str, Any]:
 
 
 def _place(path: Path) -> Path:
-    """Where a sweep is kept."""
     if path.suffix not in SUFFIXES:
         raise InputError(f"a sweep is kept in a file that ends in {' or '.join(SUFFIXES)}, got {str(path)!r}")
     if not path.parent.is_dir():
