@@ -203,13 +203,8 @@ def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]
     stepped = law.stepped(period)
     if stepped is not None:
         return [0.0, 0.0, SCENE], list(stepped.numbers)
-    sections = _sections(law, period)
+    sections = [_section(part, period) for part in law.side_by_side()]
     return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
-
-
-def _sections(environment: Environment, period: Fraction) -> list[list[float]]:
-    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n."""
-    return [_section(part, period) for part in environment.side_by_side()]
 
 
 def _section(environment: Environment, period: Fraction) -> list[float]:

@@ -59,7 +59,7 @@ def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness 
     if rows["limit"] != _NOTHING:
         do.append(("limit", rows["limit"]))
     if witness is not None:
-        do.append(("the motion", _motion_in_short(witness)))
+        do.append(("the motion", f"{_how_long(witness)} takes {shown(witness.energy, 'J')} out"))
     if not verdict.advice and "largest stiffness" in rows:
         do.append(("stiffness", f"largest: {rows['largest stiffness']}"))
     if "largest compensation" in rows:
@@ -98,10 +98,6 @@ def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Te
     for name, text in verdict.rows():
         if name != "motion":
             yield name, Text(text, style="bold" if name == "limit" else "")
-
-
-def _motion_in_short(witness: PairWitness | HeldWitness) -> str:
-    return f"{_how_long(witness)} takes {shown(witness.energy, 'J')} out"
 
 
 def _how_long(witness: PairWitness | HeldWitness) -> str:
