@@ -206,7 +206,6 @@ def size(depth: float, speed: float, unit: str) -> str:
 
 
 def _for_any_value(scope: Scope) -> str:
-    """What a claim about intervals ranges over, by name."""
     of_the_law = {"the environment's intervals": "value of the environment"}
     names = [of_the_law.get(name, in_words(name)) for name in scope.intervals]
     if not names:

@@ -36,7 +36,6 @@ _DIGITS = 6
 
 
 def print_bracket(bracket: Bracket, loop: Specification, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     with page() as out:
         out.print(_headline(bracket))
         if in_full:

@@ -148,7 +148,6 @@ def _loop(verdict: Verdict, over_ranges: bool) -> Iterator[Row]:
 
 
 def _numbers(verdict: Verdict) -> Padding:
-    """All but the motion, which has a section of its own."""
     rows: list[tuple[str, str | Text]] = [
         (name, Text(text, style="bold" if name == "limit" else "red" if text.startswith("-") else ""))
         for name, text in verdict.rows()

@@ -37,7 +37,6 @@ _SPOKEN = {
 
 
 def print_tissue(found: FittedTissue, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     test = found.test
     with page() as out:
         out.print(_headline(test))

@@ -160,7 +160,6 @@ class Plan:
 
 
 def load_plan(path: Path) -> Plan:
-    """Read the file of a network."""
     tables = read_tables([path], ("environment", "network"))
     for needed in ("environment", "network"):
         if needed not in tables:

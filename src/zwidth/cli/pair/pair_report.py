@@ -45,7 +45,6 @@ _ABOUT = (
 
 
 def print_pair(verdict: PairVerdict | HeldVerdict, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     witness = verdict.witness if verdict.outcome == "active" else None
     with page() as out:
         out.print(claimed(verdict.outcome, verdict.claim))
@@ -94,7 +93,6 @@ def _line(role: str, device: Device) -> str:
 
 
 def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Text]]:
-    """All but the motion, which has a section of its own."""
     for name, text in verdict.rows():
         if name != "motion":
             yield name, Text(text, style="bold" if name == "limit" else "")

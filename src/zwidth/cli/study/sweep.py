@@ -155,8 +155,6 @@ def _workers(typed: str | None) -> int | None:
 
 
 class Asked(NamedTuple):
-    """What `zwidth.sweep` is given."""
-
     subject: Any
     environment: Any = None
     operator: Any = None

@@ -217,7 +217,6 @@ def _print(
 
 
 def _written(better: BorneImpedance) -> str:
-    """The impedance in a line, and what of it was changed."""
     k, zeta = (
         ", ".join(f"{float(v):g}" for v in row[: better.size]) for row in (better.stiffness, better.factors)
     )

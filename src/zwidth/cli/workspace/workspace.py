@@ -219,7 +219,6 @@ def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | N
 
 
 def _save(space: Workspace | PostureMap, path: Path) -> None:
-    """The verdict with its certificate, or the map."""
     if path.suffix.lower() == ".json":
         space.save(path)
     else:
@@ -259,7 +258,6 @@ def refuse_without(arguments: argparse.Namespace) -> None:
 
 
 def null_space_of(arguments: argparse.Namespace) -> NullSpace:
-    """The answer that is asked for."""
     from zwidth.passivity.workspace import null_space
 
     for key in _OF_OTHERS:
@@ -280,7 +278,6 @@ def null_space_of(arguments: argparse.Namespace) -> NullSpace:
 
 
 def _gains(arguments: argparse.Namespace) -> tuple[Any, Any]:
-    """k and d_n, as given or as in the file of the wall."""
     if arguments.null_stiffness != _FROM_WALL:
         return arguments.null_stiffness, arguments.null_damping or "0"
     if arguments.wall is None or not is_of_controllers(Path(arguments.wall)):

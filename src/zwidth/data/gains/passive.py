@@ -187,8 +187,6 @@ def share_of(given: RealLike) -> Fraction:
 
 @dataclass(frozen=True)
 class _Joint:
-    """One joint with the damping that its gains may use."""
-
     law: JointLaw
     device: Device
     loops: Loops

@@ -216,7 +216,6 @@ def _hold(device: Device, hold: str, z: Complex, hertz: NDArray[np.float64]) -> 
 def _dataset(
     hertz: NDArray[np.float64], p11: Complex, p22: Complex, product: Complex, size: Any, need: Any
 ) -> xr.Dataset:
-    """The three conditions over frequency, and the verdict."""
     import xarray as xr
 
     asked = size + product.real

@@ -49,7 +49,6 @@ class Arms:
         self._card.html = str(pair_card(verdict, None))
 
     def hear(self, event: Event) -> Mapping[str, Any]:
-        """What is moved of the coupling."""
         if event.get("kind") == "release":
             self._released()
             return {}
@@ -97,12 +96,10 @@ def with_coupling(state: State) -> State:
 
 
 def pair_verdict(state: State) -> PairVerdict:
-    """The verdict on both arms."""
     return check_pair(pair_of(pair_tables(state)))
 
 
 def coupling_controls(verdict: PairVerdict) -> tuple[Control, ...]:
-    """What joins the arms, on sliders."""
     pair = verdict.pair
     found = []
     for key in COUPLING_KEYS:
@@ -158,5 +155,4 @@ class LinkPicture:
         return "Shaded: passive. A reading that is a sample older leaves less stiffness."
 
     def clear(self) -> None:
-        """Nothing to draw."""
         self.figure.visible = False

@@ -249,7 +249,6 @@ class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
 
     @property
     def login_url(self) -> str:
-        """Where the form is."""
         return _LOGIN
 
     @property
@@ -258,8 +257,6 @@ class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
         access = self
 
         class Enter(RequestHandler):
-            """Asks for the token."""
-
             def get(self) -> None:
                 self.set_status(401)
                 self.finish(_FORM.format(message=""))

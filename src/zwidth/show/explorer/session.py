@@ -130,7 +130,6 @@ class Session:
     # what is moved
 
     def hear(self, event: Event) -> Mapping[str, Any]:
-        """Answer one event of the form."""
         kind, path, value = str(event.get("kind")), str(event.get("path")), event.get("value")
         if kind == "press":
             return self._file(path)

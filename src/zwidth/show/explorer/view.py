@@ -21,8 +21,6 @@ from zwidth.showing import Html, Lines, Table, element, join
 
 
 class Asked(Protocol):
-    """What a picture asks of its page."""
-
     state: State
     verdict: Verdict | None
 

@@ -321,7 +321,6 @@ def _maps(found: xr.Dataset, name: str) -> Figure:
 
 
 def _map(axes: Axes, part: xr.Dataset, name: str) -> Any:
-    """One variable over two parameters, the second along x."""
     along_y, along_x = (str(dim) for dim in part.dims)
     values = part[name].transpose(along_y, along_x).values
     x, y = _scaled(part[along_x]), _scaled(part[along_y])

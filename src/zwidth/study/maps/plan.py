@@ -132,7 +132,6 @@ def spring_limit(asked: Request) -> float:
 
 
 def _spring_passes(asked: Request, stiffness: Fraction) -> bool:
-    """Whether a spring is passive, by the exact conditions."""
     device = asked.device
     period, b = device.exact("sample_period"), device.exact("damping")
     late = device.exact("delay") / period

@@ -199,7 +199,6 @@ def attributes(asked: Request, layers: Layers) -> dict[str, str]:
 
 
 def _in_words(asked: Request) -> str:
-    """The loop before its numbers are varied, on one line."""
     loop = asked.loop
     if not isinstance(loop.subject, Device):
         return loop.subject.describe()

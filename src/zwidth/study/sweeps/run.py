@@ -136,7 +136,6 @@ def _kept(
 
 
 def _told(asked: Request, found: xr.Dataset) -> dict[str, Any]:
-    """What a store says of itself once it is whole."""
     columns = {
         name: {"meaning": own.meaning, "unit": own.unit, "words": list(own.words), "several": own.several}
         for name, own in asked.columns.items()
