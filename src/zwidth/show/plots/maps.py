@@ -123,6 +123,12 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     return figure
 
 
+def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
+    """The same on given axes, the whole map and no close-up."""
+    _draw(axes, _told(found))
+    legend(axes)
+
+
 def _draw(axes: Axes, found: xr.Dataset) -> None:
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
