@@ -1,8 +1,7 @@
 """What zwidth raises when a person's input cannot be used.
 
-One class, so that a program can catch it and the command line can print it:
-every message says what was given, the bound, why the physics wants it and
-what to try.  Verdicts about nature are never exceptions.
+One class, so that a program can catch it and the command line can print it: every message says what was
+given, the bound, why the physics wants it and what to try.  Verdicts about nature are never exceptions.
 """
 
 from __future__ import annotations

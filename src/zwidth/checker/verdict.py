@@ -230,7 +230,6 @@ def headline(part: Part) -> tuple[str, str]:
 
 
 def _head(covered: Scope, kind: str) -> str:
-    """What a proof shows."""
     if covered.shows in (STABLE, UNSTABLE):
         return "Proved"
     if covered.shows in (INDEX, NO_INDEX):

@@ -25,7 +25,6 @@ class Command(NamedTuple):
 
 
 def configure(name: str, parser: argparse.ArgumentParser) -> None:
-    """Set up the arguments of a command."""
     module = _module(name)
     if hasattr(module, "USAGE"):
         parser.usage = f"%(prog)s {module.USAGE}"

@@ -114,7 +114,6 @@ ABOUT = "of each hand alone, as long as it keeps contact; dry friction and encod
 
 
 def named_hands(typed: str, motion: str) -> dict[str, Any]:
-    """The hands of a list of names."""
     from zwidth.study.maps.request import standard_hands
 
     known, names = standard_hands(motion), [name.strip() for name in typed.split(",")]

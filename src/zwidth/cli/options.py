@@ -38,7 +38,6 @@ _MEANINGS = {
 
 
 def device_parameters() -> Iterator[Parameter]:
-    """The options of a device."""
     for key in DEVICE_KEYS:
         if key in GLOSSARY:
             yield _quantity(key)
@@ -53,7 +52,6 @@ def device_parameters() -> Iterator[Parameter]:
 
 
 def environment_parameters() -> Iterator[Parameter]:
-    """The options of an environment."""
     yield Parameter("type", "TYPE", f"{', '.join(TYPES)} (default: wall)")
     for key, kind in option_keys().items():
         symbol = kind.quantity.symbol if kind.is_number else _word(key)
@@ -61,7 +59,6 @@ def environment_parameters() -> Iterator[Parameter]:
 
 
 def coupling_parameters() -> Iterator[Parameter]:
-    """The options of what joins two arms."""
     for key, own in pairs.option_keys().items():
         yield Parameter(key, own.quantity.symbol or _word(key), own.meaning + _bracket(_units(own.quantity)))
 

@@ -123,7 +123,6 @@ def print_message(message: object, command: str = "") -> None:
 
 
 def message_lines(text: str) -> list[str]:
-    """A message as it is broken into lines."""
     return [*wrapped(spelled(text), columns())]
 
 

@@ -133,7 +133,6 @@ def section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:
 
 
 def items(texts: Iterable[object], style: str = "") -> Iterator[Text]:
-    """A list, line by line."""
     for text in texts:
         yield Text(f"· {text}", style=style)
 
@@ -222,7 +221,6 @@ def motion_in_short(witness: Moves) -> str:
 
 
 def motion_lines(witness: Moves, fancy: bool) -> Iterator[Text]:
-    """The motion, line by line."""
     yield Text(motion_in_short(witness).partition(", takes")[0])
     for part in witness.motion.repeats:
         if part.times > 1:

@@ -171,7 +171,6 @@ A function makes such a mapping, or parameters, once the command is used.
 
 
 def add_options(parser: argparse.ArgumentParser, options: Options) -> None:
-    """Give a parser what a command takes."""
     group: Any = parser
     for part in options:
         if isinstance(part, str):

@@ -9,9 +9,8 @@ if W_h(t) + E(0) ≥ 0 for every hand and every t (Colgate & Schenkel 1997), wit
 
     E(0) = ½ m v² + E_s
 
-what the loop holds at first: the device in its motion, the law in what a hand
-put in to bring it there (`stored_at_start_J` of the trace, a bound that every
-passive loop keeps).  So a hand that at some instant has
+what the loop holds at first: the device in its motion, the law in what a hand put in to bring it there
+(`stored_at_start_J` of the trace, a bound that every passive loop keeps).  So a hand that at some instant has
 
     −W_h(t) > E(0)
 

@@ -10,9 +10,8 @@
     f   = law(x_m, f)                   one after the other, where laws render the environment
     f   = ΔF round(f/ΔF), |f| ≤ F_max   what the converter makes of it
 
-A wall's velocity estimator runs on every measured position; a viscoelastic
-solid, which can be left, on the penetration max(x_m, 0).  Neither pushes where
-x_m ≤ 0.
+A wall's velocity estimator runs on every measured position; a viscoelastic solid, which can be left, on the
+penetration max(x_m, 0).  Neither pushes where x_m ≤ 0.
 """
 
 from __future__ import annotations
@@ -204,13 +203,8 @@ def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]
     stepped = law.stepped(period)
     if stepped is not None:
         return [0.0, 0.0, SCENE], list(stepped.numbers)
-    sections = _sections(law, period)
+    sections = [_section(part, period) for part in law.side_by_side()]
     return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
-
-
-def _sections(environment: Environment, period: Fraction) -> list[list[float]]:
-    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n."""
-    return [_section(part, period) for part in environment.side_by_side()]
 
 
 def _section(environment: Environment, period: Fraction) -> list[float]:

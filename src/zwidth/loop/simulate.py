@@ -83,9 +83,8 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a hand on the device, ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly.
 
-    Of a device with a `Transmission` two masses, see there; the hand is on the handle.
-    Of a `Pair`, ``simulate(pair, leader, follower, duration)`` with what holds either arm, see
-    `simulation.simulate_pair`.
+    Of a device with a `Transmission` two masses, see there; the hand is on the handle. Of a `Pair`,
+    ``simulate(pair, leader, follower, duration)`` with what holds either arm, see `simulation.simulate_pair`.
 
     Parameters
     ----------

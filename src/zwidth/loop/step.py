@@ -1,9 +1,8 @@
 """One stretch of motion and its energies: slide, stop, stick, break away, turn round; or as prescribed.
 
-At rest the net external force F_e = F + k (x_a − x) + c ẋ_a − f_a is balanced by
-friction up to the stiction f_s; beyond it the mass slides, against f_c sgn v,
-until its velocity is 0 again.  Each of these events is found where it happens;
-between two of them the motion has a closed form.
+At rest the net external force F_e = F + k (x_a − x) + c ẋ_a − f_a is balanced by friction up to the stiction
+f_s; beyond it the mass slides, against f_c sgn v, until its velocity is 0 again.  Each of these events is
+found where it happens; between two of them the motion has a closed form.
 """
 
 from __future__ import annotations

@@ -2,9 +2,8 @@
 
     t_k = k T + ε_k,   0 ≤ ε_k < T,   ε_0 = 0
 
-A late sample is measured late, and its force is applied `delay` after it.  At a
-missed sample nothing is measured and nothing computed: the law and the force
-stay as they were.
+A late sample is measured late, and its force is applied `delay` after it.  At a missed sample nothing is
+measured and nothing computed: the law and the force stay as they were.
 """
 
 from __future__ import annotations

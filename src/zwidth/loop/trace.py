@@ -1,8 +1,7 @@
 """The record of a simulation as labelled data along `time`, and as an xarray.Dataset where one is asked for.
 
-Values stand at instants.  At a jump (a force applied, an impulse of a
-kinematic hand) position, velocity and energies are those before it, forces
-those just after it.
+Values stand at instants.  At a jump (a force applied, an impulse of a kinematic hand) position, velocity and
+energies are those before it, forces those just after it.
 """
 
 from __future__ import annotations

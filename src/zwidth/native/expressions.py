@@ -65,16 +65,13 @@ class Expressions(Reader):
         self.blank()
 
     def blank(self) -> None:
-        """Nothing is written yet."""
         self.lines: list[str] = []
         self.depth, self.counted, self.owned = 1, 0, 0
 
     def say(self, text: str) -> None:
-        """Write a line."""
         self.lines.append("  " * self.depth + text)
 
     def fresh(self) -> str:
-        """A name of its own."""
         self.counted += 1
         return f"t{self.counted}"
 
@@ -117,7 +114,6 @@ class Expressions(Reader):
         return f"({value.c} != 0)" if value.type == REAL else value.c
 
     def read(self, node: ast.expr) -> Read:
-        """An expression."""
         if not isinstance(node, ast.Tuple):
             known = self.module.value(node, self.types)
             if isinstance(known, bool | int | float):

@@ -47,7 +47,6 @@ class Translation:
         self._by_hand = BY_HAND.read_text(encoding="utf-8")
 
     def text(self) -> str:
-        """The whole text."""
         bodies, faults = list[str](), list[str]()
         own = list(self.package.step_functions())
         for of in own:
@@ -184,7 +183,6 @@ class Function(Expressions):
     """Writes one function."""
 
     def written(self) -> str:
-        """The function in C."""
         assert isinstance(self.of.node, ast.FunctionDef)
         known = None
         while known != self.types:  # a name may be read, in a loop, above where its type is told

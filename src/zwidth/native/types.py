@@ -148,7 +148,6 @@ def annotated(node: ast.expr | None, module: Module) -> Type:
 
 
 def fields(of: Defined) -> Several:
-    """A named tuple."""
     assert isinstance(of.node, ast.ClassDef)
     if [ast.unparse(base) for base in of.node.bases] != ["NamedTuple"]:
         raise of.module.outside(of.node, f"{of.node.name} is no named tuple")
@@ -181,7 +180,6 @@ class Signature(NamedTuple):
     module: Module
 
     def head(self) -> str:
-        """The first line of the function in C."""
         takes = ", ".join(f"{taken(of)}{name}_{'at' * is_large(of)}" for name, of in self.takes) or "void"
         return f"static {self.returns.c} {self.name}({takes})"
 
@@ -192,12 +190,10 @@ def is_large(of: Type) -> bool:
 
 
 def taken(of: Type) -> str:
-    """A parameter's type in C."""
     return f"const {of.c} *" if is_large(of) else f"{of.c} "
 
 
 def address(text: str, of: Type) -> str:
-    """An argument as it is handed over."""
     if not is_large(of):
         return text
     return f"&{text}" if text.replace(".", "").isidentifier() else f"({of.c}[1]){{{text}}}"

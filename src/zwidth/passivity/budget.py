@@ -1,9 +1,8 @@
 """Where the required damping comes from, and which mechanism binds.
 
-At the tightest frequency the requirement is split into what holding the force
-costs a spring of the law's static stiffness, K T/2, what the law's own
-dynamics add or take away (virtual damping, its estimator, viscoelasticity),
-and what the delay adds.  Coulomb friction has its own account: K Δ/2 and more.
+At the tightest frequency the requirement is split into what holding the force costs a spring of the law's
+static stiffness, K T/2, what the law's own dynamics add or take away (virtual damping, its estimator,
+viscoelasticity), and what the delay adds.  Coulomb friction has its own account: K Δ/2 and more.
 """
 
 from __future__ import annotations

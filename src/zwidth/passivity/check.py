@@ -1,8 +1,7 @@
 """The main verb: is this device, rendering this environment, passive?
 
-Nothing is claimed on the prover's word: "passive" needs a certificate that
-the independent checker accepts, "active" a violation that it confirms or a
-motion whose energy it recomputes.
+Nothing is claimed on the prover's word: "passive" needs a certificate that the independent checker accepts,
+"active" a violation that it confirms or a motion whose energy it recomputes.
 """
 
 from __future__ import annotations
@@ -80,13 +79,12 @@ def check(
 
         b ≥ (T/2) Re{(1 − e^{−jωT}) H(e^{jωT})}/(1 − cos ωT),  0 < ω ≤ π/T,
 
-    and H is stable (Colgate & Schenkel 1997; Fardad & Bamieh 2009); with a
-    delay of any length in the form derived in the documentation; and, with an
-    encoder of resolution Δ, f_c must cover its error: f_c ≥ K Δ/2 for a spring
-    (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
-    covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
-    f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
-    values are iterated as in `available_storage`, for some seconds of one core at most.
+    and H is stable (Colgate & Schenkel 1997; Fardad & Bamieh 2009); with a delay of any length in the form
+    derived in the documentation; and, with an encoder of resolution Δ, f_c must cover its error: f_c ≥ K Δ/2
+    for a spring (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is covered with contact
+    made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.
+    Where these conditions leave a gap values are iterated as in `available_storage`, for some seconds of one
+    core at most.
 
     Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a chain by the force
     bounding that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
@@ -300,7 +298,6 @@ def _passive(
 
 
 def _also(certificate: Certificate, law: Environment) -> tuple[Also, ...]:
-    """What else a proof of this kind covers."""
     if certificate.is_of_springs:
         return ("springs",)
     return ("clamped",) if certificate.kind == "contact" and not law.clamped else ()
@@ -316,9 +313,8 @@ def _scope(device: Device, law: Environment, at: Decision) -> Scope:
 def _at_limit(decision: Decision) -> bool:
     """True when the smallest decrease of b or f_c would lose the proof.
 
-    Of a clamped law only the conditions for contact made and broken decide.  A
-    criterion that touches zero may do so at a pole on the unit circle, whatever
-    b is: so a slightly smaller b is decided too.
+    Of a clamped law only the conditions for contact made and broken decide.  A criterion that touches zero
+    may do so at a pole on the unit circle, whatever b is: so a slightly smaller b is decided too.
     """
     friction, loop = decision.sufficient_friction, decision.loop
     if friction and friction == decision.setting.coulomb_friction:

@@ -1,9 +1,8 @@
 """Intervals: which single values of the parameters decide for all of them.
 
-More damping and Coulomb friction never hurt, a finer encoder never hurts, and
-mass plays no part: one end of each decides.  The other parameters are decided
-by the corners of their box where the requirements are convex or monotone in
-each of them separately, since such a function is largest at a corner:
+More damping and Coulomb friction never hurt, a finer encoder never hurts, and mass plays no part: one end of
+each decides.  The other parameters are decided by the corners of their box where the requirements are convex
+or monotone in each of them separately, since such a function is largest at a corner:
 
 * T and the delay of a spring, as b* increases in both;
 * T without delay where the requirement is proportional to it, or that plus a constant;

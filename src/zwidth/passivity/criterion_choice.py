@@ -5,10 +5,9 @@ Two conditions, and both must hold:
 viscous    the hold, the delay and the law itself leak energy that b must take
            out: the linear criterion (`criterion`), exact and necessary;
 friction   one encoder count leaks energy that f_c must take out.  For a spring
-           f_c ≥ K Δ/2 is necessary and sufficient (Abbott & Okamura 2005; with
-           any delay: see the documentation).  For another law f_c ≥ ‖h‖₁ Δ/2 is
-           sufficient and straddling an edge gives a necessary bound; between
-           the two nothing is claimed.
+           f_c ≥ K Δ/2 is necessary and sufficient (Abbott & Okamura 2005; with any delay: see the
+           documentation).  For another law f_c ≥ ‖h‖₁ Δ/2 is sufficient and straddling an edge gives a
+           necessary bound; between the two nothing is claimed.
 
 Coulomb friction never helps against the first: a larger motion outweighs it.
 

@@ -10,9 +10,8 @@ f = √(k/m)/2π and gets energy out only if that is high enough: the heavier th
 device, the stiffer the hand must be. This is the conservatism that Abbott &
 Okamura (2005, section III-D) ascribe to the impulses of their hand.
 
-Both hands are run through the simulator, with the device's own mass and an
-ideal actuator. What a hand has got out is max(−W_h) over the motion: it begins
-at rest at the surface, where nothing is stored.
+Both hands are run through the simulator, with the device's own mass and an ideal actuator. What a hand has
+got out is max(−W_h) over the motion: it begins at rest at the surface, where nothing is stored.
 """
 
 from __future__ import annotations

@@ -127,8 +127,7 @@ class LinearVerdict(Verdict):
     def max_stiffness(self) -> float | None:
         """Largest passive stiffness K, all else as given [N/m; N·m/rad].
 
-        inf if every stiffness is passive; None if none is, or the law has none
-        (see `max_gain`).
+        inf if every stiffness is passive; None if none is, or the law has none (see `max_gain`).
         """
         return parameter_limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
 
@@ -170,9 +169,8 @@ class LinearVerdict(Verdict):
     def admissible_speed(self) -> float | None:
         """Hand speed up to which an active spring wall still gives out no energy [m/s; rad/s].
 
-        v = (2f_c − K Δ)/(K T − 2b), for mean speeds over a sample: Coulomb
-        friction outweighs the hold's leak of slow motions.  None where it does
-        not apply: a passive loop, another law, a delay.
+        v = (2f_c − K Δ)/(K T − 2b), for mean speeds over a sample: Coulomb friction outweighs the hold's leak
+        of slow motions.  None where it does not apply: a passive loop, another law, a delay.
         """
         spring, loop = self.decision.is_spring, self.decision.loop
         if self.outcome != "active" or not spring or loop.whole_delay or loop.part_delay:

@@ -1,9 +1,8 @@
 """Where the closed forms end: `check` computes the available storage itself.
 
-The linear criterion speaks of a hand that stays inside, and between what is
-proved enough and what is refuted there is a gap.  Available storage covers contact made
-and broken.  A motion it finds refutes the loop; a proof it finds is of hands
-within bounds, so that it stands beside the verdict and does not change it.
+The linear criterion speaks of a hand that stays inside, and between what is proved enough and what is refuted
+there is a gap.  Available storage covers contact made and broken.  A motion it finds refutes the loop; a
+proof it finds is of hands within bounds, so that it stands beside the verdict and does not change it.
 """
 
 from __future__ import annotations

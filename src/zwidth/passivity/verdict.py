@@ -188,7 +188,6 @@ class Verdict(Found):
 
 
 def _part(left: float | None, has: float) -> float:
-    """What is left, as a part of what there is."""
     assert left is not None
     if has:
         return left / has

@@ -204,7 +204,6 @@ def size(depth: float, speed: float, unit: str) -> str:
 
 
 def _for_any_value(scope: Scope) -> str:
-    """What a claim about intervals ranges over, by name."""
     of_the_law = {"the environment's intervals": "value of the environment"}
     names = [of_the_law.get(name, in_words(name)) for name in scope.intervals]
     if not names:
@@ -308,7 +307,6 @@ def _losses(scope: Scope) -> Iterator[str]:
 
 
 def _measured(scope: Scope) -> str:
-    """Up to which speed."""
     if scope.friction_speed is None:
         return ""
     speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)

@@ -237,6 +237,7 @@ def test_ideal_encoder():
     ("call", "message"),
     [
         (lambda: q.plane_point(PADDLE, 0), "stiffness must be > 0, got 0"),
+        (lambda: q.catalogue_coordinates(-1), "stiffness must be > 0"),
         (lambda: q.fast_press(PADDLE, 301, counts=10714), r"= 10714\.3, got 10714"),
         (lambda: q.fast_press(PADDLE, 301, counts=20000.5), r"got 20000\.5"),
         (lambda: q.fast_press(PADDLE, 300), "does not exceed 2b/T = 300"),
@@ -253,3 +254,13 @@ def test_ideal_encoder():
 def test_what_the_formulas_do_not_cover_is_refused(call, message):
     with pytest.raises(zw.InputError, match=message):
         call()
+
+
+def test_catalogue_in_the_plane():
+    """The paddle is a point, a device without published friction a line, one with nothing is left out."""
+    marks = q.catalogue_coordinates(770)
+    point = q.plane_point(PADDLE, 770)
+    assert marks["haptic-paddle"] == (point.viscous, point.dry)
+    beta, sigma = marks["phantom"]
+    assert (beta.fraction, sigma) == (Fraction(27, 77), None)
+    assert "omega.3" not in marks

@@ -320,7 +320,6 @@ def _after(rows: Rows, side: Rows) -> Rows:
 
 
 def _of_pairs(pairs: dict[tuple[int, int], Rows], free: list[int]) -> list[list[Rows]]:
-    """Second derivatives, which come in any order."""
     return [[pairs[min(k, j), max(k, j)] for j in free] for k in free]
 
 

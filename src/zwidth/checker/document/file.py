@@ -119,7 +119,6 @@ def _keys_of_one_motion(fields: Record) -> tuple[set[str], set[str]]:
 
 
 def _told(value: Any, depth: int = MOST_LEVELS) -> Iterator[str]:
-    """The keys of a document."""
     if depth == 0:
         raise Invalid(f"a document has at most {MOST_LEVELS} levels")
     if isinstance(value, Mapping):

@@ -57,7 +57,7 @@ def plant_of(told: Read, bits: int) -> Plant:
     """The plant of a document; computed with so many bits where it is not given."""
     if told.plant is not None:
         only_if(False, told.loop, "loop")
-        return Plant(*(_known(part) for part in given(told.plant)))
+        return Plant(*([Enclosed(0, c) for c in part] for part in given(told.plant)))
     loop = only_if(True, told.loop, "loop")
     found = sampled(_touched(loop), bits)
     zero = Enclosed(bits, 0)
@@ -72,10 +72,6 @@ def given(plant: Read) -> tuple[list[int], list[int]]:
     scale = common_scale((*top, *bottom))
     first, second = ([int(c * scale) for c in part] for part in (top, bottom))
     return first, second
-
-
-def _known(whole: Sequence[int]) -> list[Enclosed]:
-    return [Enclosed(0, c) for c in whole]
 
 
 def _touched(loop: Read) -> Motion:

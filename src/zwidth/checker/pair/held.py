@@ -111,7 +111,6 @@ def _alone(held: Held) -> Loop:
 
 
 def _covered(held: Held) -> int:
-    """In how many boxes all was shown."""
     left, tried, shown = [(held.motion, 0)], 0, 0
     coupling = Fraction(sum(held.taps[2]), held.scale)
     while left:

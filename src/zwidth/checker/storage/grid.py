@@ -1,16 +1,14 @@
 """A storage function re-checked: no move of the hand takes out more energy than V falls.
 
-The document gives V on a grid: cells of one encoder count, M steps in each,
-and every remembered reading.  Whole numbers throughout: forces in multiples of
-a unit, energies in multiples of unit × step.  Between two neighbouring nodes V is
-meant to be linear.  If for all nodes x, x' that are D steps apart
+The document gives V on a grid: cells of one encoder count, M steps in each, and every remembered reading.
+Whole numbers throughout: forces in multiples of a unit, energies in multiples of unit × step.  Between two
+neighbouring nodes V is meant to be linear.  If for all nodes x, x' that are D steps apart
 
     V(s, x) ≥ −f (x' − x) − φ D − β (D² − ¼) [D ≥ 2] + V(s', x')
 
-then the same holds for all positions between, with φ |d| + β d²: on both triangles of the
-square of two steps, cut where d is constant, V(s, x) − V(s', x') and f d and φ |d| are
-linear, and the linear interpolation of D² − ¼ (0 for D ≤ 1) between two neighbouring D
-is at most d².
+then the same holds for all positions between, with φ |d| + β d²: on both triangles of the square of two
+steps, cut where d is constant, V(s, x) − V(s', x') and f d and φ |d| are linear, and the linear interpolation
+of D² − ¼ (0 for D ≤ 1) between two neighbouring D is at most d².
 
 Where a delay changes the force within a sample, the interval is two such moves, the
 function between them being the most that the second can lead to.

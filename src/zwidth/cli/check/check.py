@@ -112,6 +112,5 @@ def _in_full(verdict: Verdict, hands: Mapping[str, Stability], **reports: Report
 
 
 def _reports(hands: Mapping[str, Stability], **reports: Report | None) -> dict[str, Any]:
-    """Those that were asked for, as plain data."""
     found = {name: report.to_dict() for name, report in reports.items() if report is not None}
     return found | ({"known_hands": {name: one.to_dict() for name, one in hands.items()}} if hands else {})

@@ -123,7 +123,6 @@ def _copy(table: Given) -> Given:
 
 
 def _named(loops: Iterator[Specification]) -> dict[str, Specification]:
-    """By the name of the device."""
     named: dict[str, Specification] = {}
     for loop in loops:
         name = plain(loop.device.name)
@@ -231,7 +230,6 @@ class EachDevice(Documented):
             )
 
     def _what_limits(self) -> Iterator[str]:
-        """Which devices are held back by the same."""
         for limit in dict.fromkeys(map(self._limit, self.verdicts)):
             if limit:
                 yield f"{limit}: {', '.join(n for n in self.verdicts if self._limit(n) == limit)}"

@@ -130,7 +130,6 @@ def named(typed: str) -> str:
 
 
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
-    """The search as `passive_limit` takes it."""
     length, speed = (GLOSSARY[name].unit_for(motion) for name in ("position", "velocity"))
     units = {"penetration": length, "speed": speed, "tolerance": "1", "effort": "1", "seconds": "s"}
     options: dict[str, Any] = {

@@ -36,7 +36,6 @@ _DIGITS = 6
 
 
 def print_bracket(bracket: Bracket, loop: Specification, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     with page() as out:
         out.print(_headline(bracket))
         if in_full:
@@ -51,7 +50,6 @@ def print_bracket(bracket: Bracket, loop: Specification, in_full: bool = False) 
 
 
 def _all(out: Console, bracket: Bracket, loop: Specification) -> None:
-    """Everything, the small print last."""
     fancy = encodes(PICTURE)
     out.print(below(grid(_loop(bracket, loop))))
     out.print(below(_values(bracket)))

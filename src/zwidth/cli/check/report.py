@@ -123,7 +123,6 @@ def _assumed(verdict: Verdict) -> Text:
 
 
 def _all(out: Console, verdict: Verdict, over_ranges: bool) -> None:
-    """Everything, the small print last."""
     fancy = encodes(PICTURE)
     out.print(below(grid(_loop(verdict, over_ranges))))
     out.print(_numbers(verdict))
@@ -149,7 +148,6 @@ def _loop(verdict: Verdict, over_ranges: bool) -> Iterator[Row]:
 
 
 def _numbers(verdict: Verdict) -> Padding:
-    """All but the motion, which has a section of its own."""
     rows: list[tuple[str, str | Text]] = [
         (name, Text(text, style="bold" if name == "limit" else "red" if text.startswith("-") else ""))
         for name, text in verdict.rows()

@@ -106,7 +106,6 @@ def print_judged(found: Judged, laws: Mapping[str, str]) -> None:
 
 
 def _rows(part: Part, law: str | None) -> Iterator[tuple[str, str]]:
-    """What the checker read, in other words too."""
     for row in rows(part):
         if row.name == "energy extracted" and part.verification.energy is not None:
             yield row.name, _joules(part.verification.energy)

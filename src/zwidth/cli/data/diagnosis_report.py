@@ -29,7 +29,6 @@ _OPTIONS = {"stiffness": "--stiffness", "damping": "--virtual-damping", "delay":
 
 
 def print_diagnosis(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> None:
-    """Print the report on standard output."""
     with page() as out:
         out.print(_headline(found))
         section(out, "what speaks for it", items(found.evidence))
@@ -108,7 +107,6 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
 
 
 def _law_as_stated(change: Change) -> list[str]:
-    """What differs from the law that was given."""
     if change.parameter not in ("stiffness", "damping"):
         return []
     return [_OPTIONS[change.parameter], _with_unit(change.to, change.parameter, change.device.motion)]
@@ -127,7 +125,6 @@ def _law_as_found(law: Law, change: Change) -> list[str]:
 
 
 def _with_unit(value: float, quantity: str, motion: str) -> str:
-    """As it is typed, in the angle of the question."""
     factor, unit = spoken(GLOSSARY[quantity].unit_for(motion))
     return f"{factor * value:.6g} {unit}"
 

@@ -47,7 +47,6 @@ _FEW = 2
 
 
 def print_identified(found: Identification, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     own = found.identified.findings[len(found.log.findings) :]
     better = [line for line in advice(found.identified, found.confidence) if "may be 0" not in line]
     with page() as out:

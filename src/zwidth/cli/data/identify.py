@@ -124,7 +124,6 @@ def _further_logs(arguments: argparse.Namespace) -> list[str]:
 
 
 def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
-    """How to read the log, as `read_log` takes it."""
     reading = reading_of(arguments, QUANTITIES)
     for name in ("sample_rate", "sample_period", "resolution", "counts_per_turn", "sheet", "motion"):
         if getattr(arguments, name) is not None:
@@ -135,7 +134,6 @@ def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The estimate as `identify` takes it."""
     options = {name: getattr(arguments, name) for name in ("mass", "delay") if getattr(arguments, name)}
     if arguments.zero is not None:
         if arguments.zero not in ZEROS:

@@ -128,7 +128,6 @@ def _names_device(arguments: argparse.Namespace) -> bool:
 
 
 def _words(arguments: argparse.Namespace) -> dict[str, str]:
-    """What was typed of the device."""
     return given(arguments, [parameter.key for parameter in device_parameters()])
 
 

@@ -37,7 +37,6 @@ _SPOKEN = {
 
 
 def print_tissue(found: FittedTissue, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     test = found.test
     with page() as out:
         out.print(_headline(test))
@@ -106,7 +105,6 @@ def _columns(lines: Sequence[Sequence[str]]) -> Table:
 
 
 def _models(test: TissueTest) -> str:
-    """What was tried, in a line."""
     others = [
         f"{name} {above - test.criteria[test.chosen]:+.3g}"
         for k, (name, above) in enumerate(zip(test.names, test.criteria, strict=True))
@@ -140,7 +138,6 @@ def _scale(bracket: Bracket, kept: Bracket | None) -> str:
 
 
 def _assumed(test: TissueTest) -> Iterator[str]:
-    """What the intervals rest on."""
     response = "depth" if test.test.kind == "creep" else "force"
     given = "force" if test.test.kind == "creep" else "depth"
     memory = test.tried[test.chosen].found.noise.memory

@@ -86,7 +86,6 @@ def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | N
 
 
 def _period(typed: Mapping[str, str]) -> Exact | None:
-    """What --rate or --sample-period says."""
     if not typed:
         return None
     if len(typed) == 2:

@@ -114,7 +114,6 @@ def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
 
 
 def _about(real: PortRun) -> str:
-    """What the person at the device has to know."""
     connection = real.connection
     return f"{connection.describe()}; if nothing comes any more: {connection.on_silence}"
 

@@ -160,7 +160,6 @@ class Plan:
 
 
 def load_plan(path: Path) -> Plan:
-    """Read the file of a network."""
     tables = read_tables([path], ("environment", "network"))
     for needed in ("environment", "network"):
         if needed not in tables:
@@ -296,7 +295,6 @@ def _device(row: Table) -> tuple[str, Held]:
 
 
 def _real(row: Table, device: Device, wait: Fraction) -> Held:
-    """A device with a connection."""
     from zwidth.machine.servo.connection import Placement
     from zwidth.machine.servo.devices.registry import build_connection
     from zwidth.machine.servo.safety import read_safety
@@ -326,7 +324,6 @@ def _flag(row: Table, key: str) -> bool:
 
 
 def _inner(row: Table, key: str, example: str, default: Mapping[str, Any] | None = None) -> Table:
-    """A table in a table."""
     given = row.values.get(key, default)
     if not isinstance(given, Mapping):
         raise InputError(f"{row.label}: {key} is a table, such as {example}")

@@ -66,7 +66,6 @@ def _replayed(recording: Recording) -> Iterator[dict[str, Any]]:
 
 
 def _write(recording: Recording, plot: Path | None, save: Path | None) -> None:
-    """The picture and the file that were asked for."""
     if plot is None and save is None:
         return
     if recording.samples < 2:

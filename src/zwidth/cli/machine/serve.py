@@ -137,7 +137,6 @@ def _give_out(report: Any, as_json: bool, save: Path | None = None) -> int:
 
 
 def _say_what_is_served(servo: Servo) -> Callable[[], Any]:
-    """What was measured and proved, before the force comes."""
     from zwidth.machine.servo.proving import claimed
 
     assert servo.measured is not None

@@ -78,7 +78,6 @@ def _side(
 def _hand(
     pair: Pair, leads: bool, arguments: argparse.Namespace, tables: Mapping[str, Table], simulated: bool
 ) -> Any:
-    """What holds a simulated arm."""
     from zwidth.cli.simulate.tables import build_hand, operator_parameters
     from zwidth.model.operator import HandsOff, usual_hand
 

@@ -16,7 +16,6 @@ CONNECTION, SAFETY, OPERATOR = "connection", "safety", "operator"
 
 
 def connection_parameters() -> list[Parameter]:
-    """The options of a connection."""
     from zwidth.machine.servo.devices.registry import CONNECTIONS, SIMULATED, keys
 
     kinds = ", ".join((SIMULATED, *CONNECTIONS))
@@ -33,7 +32,6 @@ def connection_parameters() -> list[Parameter]:
 
 
 def safety_parameters() -> list[Parameter]:
-    """The options of the safety."""
     from zwidth.machine.servo.safety import MEANINGS, Safety
     from zwidth.quantity.parameter import parameters_of
 

@@ -46,7 +46,6 @@ MOTION = Question(
 
 
 def unit_of_answer(key: str, motion: str) -> str:
-    """The unit that an answer without one has."""
     return "Hz" if key == "rate" else (ROTARY.get(key) or parameters_of(Device)[key]).unit_for(motion)
 
 

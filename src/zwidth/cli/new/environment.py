@@ -62,7 +62,6 @@ def _device(ask: Asker, named: str | None) -> Device | None:
 
 
 def _next(path: Path, whose: str) -> list[str]:
-    """What to type now, with a guess of what the device lacks."""
     missing = lacking(whose)
     guess = f" {guessed(missing, told_as(whose))}" if missing else ""
     first = (
@@ -93,7 +92,6 @@ class _Asked(NamedTuple):
     whose: str
 
     def unit(self, key: str) -> str:
-        """The unit of an answer."""
         return units_of(self.motion)[key]
 
     def sure(self, key: str) -> str:
@@ -205,7 +203,6 @@ def _of_unit(unit: str, key: str) -> Callable[[str], str]:
 
 
 def units_of(motion: str) -> dict[str, str]:
-    """The unit of each answer."""
     way, force, stiff, damped = (
         ("rad", "N*m", "N*m/rad", "N*m*s/rad") if motion == "rotary" else ("m", "N", "N/m", "N*s/m")
     )

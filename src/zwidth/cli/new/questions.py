@@ -51,7 +51,6 @@ class Question(NamedTuple):
 
     @property
     def option(self) -> str:
-        """Its name on the command line."""
         return "--" + self.key.replace("_", "-")
 
 
@@ -126,7 +125,6 @@ class Asker:
             )
 
     def _checked(self, question: Question, answer: str, where: str) -> tuple[str | None, str]:
-        """The answer, and what to say of it."""
         answer = answer or question.enter
         if answer.lower() in _UNKNOWN:
             return None, question.unknown
@@ -176,7 +174,6 @@ _LIKELY = {"m": "mm", "rad": "deg"}
 
 
 def is_bare(answer: str) -> bool:
-    """True of a number without a unit."""
     return not any(c.isalpha() or c in "°%" for c in answer)
 
 

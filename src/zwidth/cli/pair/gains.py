@@ -185,7 +185,6 @@ def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
 def _of_one(
     verdict: GainsVerdict, arguments: argparse.Namespace, plot: Path | None, save: Path | None
 ) -> int:
-    """One joint, with the notes on the gains."""
     pair, notes = verdict.joint(arguments.joint).verdict, {"notes": list(verdict.notes)}
     if save is not None:
         save_json(save, {**pair.saved(), **notes})

@@ -18,7 +18,6 @@ from zwidth.showing import Table
 
 
 def print_gains(verdict: GainsVerdict, in_full: bool = False) -> None:
-    """Print the verdicts on standard output."""
     decided, better = verdict.tables()
     with page() as out:
         out.print(claimed(verdict.outcome, verdict.claim))

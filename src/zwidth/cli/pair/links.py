@@ -13,7 +13,6 @@ from zwidth.model.specification.read import load_device
 
 
 def link_parameters() -> Iterator[Parameter]:
-    """The options of a link."""
     from zwidth.links.schedule import Schedule
     from zwidth.quantity.parameter import parameters_of
 

@@ -41,7 +41,6 @@ _SIDES: Mapping[str, str] = {"leader": OPERATOR, "follower": FOLLOWER}
 
 
 def hand_parameters() -> Iterator[Parameter]:
-    """The options of both."""
     for side, option in _SIDES.items():
         kinds = f"{NOBODY}, or {IMPEDANCE} with the numbers below"
         yield Parameter(option, "TYPE", f"a known hand on the {side}: {kinds} (default: any hand)")

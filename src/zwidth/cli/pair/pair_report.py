@@ -45,7 +45,6 @@ _ABOUT = (
 
 
 def print_pair(verdict: PairVerdict | HeldVerdict, in_full: bool = False) -> None:
-    """Print the report on standard output."""
     witness = verdict.witness if verdict.outcome == "active" else None
     with page() as out:
         out.print(claimed(verdict.outcome, verdict.claim))
@@ -59,7 +58,7 @@ def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness 
     if rows["limit"] != _NOTHING:
         do.append(("limit", rows["limit"]))
     if witness is not None:
-        do.append(("the motion", _motion_in_short(witness)))
+        do.append(("the motion", f"{_how_long(witness)} takes {shown(witness.energy, 'J')} out"))
     if not verdict.advice and "largest stiffness" in rows:
         do.append(("stiffness", f"largest: {rows['largest stiffness']}"))
     if "largest compensation" in rows:
@@ -70,7 +69,6 @@ def _few(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness 
 
 
 def _all(out: Console, verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> None:
-    """Everything, the small print last."""
     out.print(below(grid(_arms(verdict.pair))))
     out.print(below(grid(_numbers(verdict))))
     if witness is not None:
@@ -95,15 +93,9 @@ def _line(role: str, device: Device) -> str:
 
 
 def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Text]]:
-    """All but the motion, which has a section of its own."""
     for name, text in verdict.rows():
         if name != "motion":
             yield name, Text(text, style="bold" if name == "limit" else "")
-
-
-def _motion_in_short(witness: PairWitness | HeldWitness) -> str:
-    """How long it is, and what comes out."""
-    return f"{_how_long(witness)} takes {shown(witness.energy, 'J')} out"
 
 
 def _how_long(witness: PairWitness | HeldWitness) -> str:

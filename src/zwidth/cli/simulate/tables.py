@@ -98,7 +98,6 @@ class Touch(NamedTuple):
 
 
 def operator_parameters() -> Iterator[Parameter]:
-    """The options of an operator."""
     before = f"{OPERATOR}."
     kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
     yield Parameter(
@@ -135,7 +134,6 @@ def _help(quantity: Quantity, kinds: list[str]) -> str:
 
 
 def simulation_parameters() -> Iterator[Parameter]:
-    """The options of a simulation."""
     for key, quantity in KEYS.items():
         unit = "" if quantity.unit in ("", "1") else f" [{quantity.unit}]"
         if quantity.unit != quantity.rotary_unit:

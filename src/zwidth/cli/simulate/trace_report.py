@@ -159,7 +159,6 @@ _FEW_OF_A_PAIR = ("stiffness felt at the leader", "leader and follower apart, rm
 
 
 def print_pair_trace(trace: AnyTrace, in_full: bool = False) -> None:
-    """Print the report of one trace of a pair."""
     book = PairLedger(trace)
     with page() as out:
         out.print(_pair_headline(book))

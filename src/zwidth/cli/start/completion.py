@@ -91,7 +91,6 @@ def _completed(prefix: str, action: argparse.Action, **_: object) -> list[str]:
 
 
 def _files(prefix: str, ends: tuple[str, ...]) -> list[str]:
-    """Folders, and files that end so."""
     name = prefix.rpartition("/")[2]
     before = prefix[: len(prefix) - len(name)]
     try:

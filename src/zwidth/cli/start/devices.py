@@ -77,7 +77,6 @@ def _table(entry: Entry, in_full: bool) -> Table:
 
 
 def _ranges(entry: Entry) -> Table:
-    """Each range, and why it is this one."""
     grid = Table.grid(padding=(0, 2))
     grid.add_column(width=0)
     grid.add_column(min_width=16)

@@ -51,5 +51,4 @@ def copy_to(folder: Path, force: bool) -> None:
 
 
 def _told(example: samples.Example) -> str:
-    """The meaning, the files, the command."""
     return f"{example.meaning}\n  {', '.join(example.files)}\n  {example.command}"

@@ -95,7 +95,6 @@ def _touched(tables: Mapping[str, Table], typed: Mapping[str, str]) -> tuple[Spe
 def _of_a_rim(
     loop: Specification, radius: Exact, typed: str | None, yours: Mapping[str, Environment], fastest: float
 ) -> LawComparison:
-    """The comparison at the rim, told about the axis."""
     from zwidth.show.with_bar import compare
     from zwidth.study.bench.bench import at_rim, standard_laws, wall_to_render
 

@@ -122,7 +122,6 @@ def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:
 
 
 def _options(arguments: argparse.Namespace, motion: str, environment: Table | None) -> dict[str, Any]:
-    """The map as `z_width` takes it."""
     from zwidth.model.specification.values import velocity_filter
 
     options: dict[str, Any] = {

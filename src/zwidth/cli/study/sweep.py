@@ -132,7 +132,6 @@ def _draw(found: xr.Dataset, plot: Path) -> None:
 
 
 def _varied(typed: list[str] | None) -> dict[str, str]:
-    """Names and values as they were typed."""
     if not typed:
         raise InputError("nothing is varied: say what and over which values, --vary stiffness=100:3000:50")
     found: dict[str, str] = {}
@@ -157,8 +156,6 @@ def _workers(typed: str | None) -> int | None:
 
 
 class Asked(NamedTuple):
-    """What `zwidth.sweep` is given."""
-
     subject: Any
     environment: Any = None
     operator: Any = None
@@ -245,7 +242,6 @@ def _refuse_others(arguments: argparse.Namespace, of: str) -> None:
 
 
 def _parameters(of: str) -> Iterable[Parameter]:
-    """The parameters that a question has."""
     from zwidth.cli.simulate.tables import operator_parameters, simulation_parameters
 
     if of == "pair":

@@ -134,7 +134,6 @@ def joints_of(arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def read_joints(path: Path) -> dict[str, Any]:
-    """The table [joints] of a TOML file."""
     from zwidth.model.specification.read import read_tables
     from zwidth.model.specification.values import joint_transmissions
 
@@ -234,7 +233,6 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
 
 
 def is_of_controllers(path: Path) -> bool:
-    """Whether the file is one of ros2_control."""
     return path.suffix.lower() in _CONTROLLERS
 
 
@@ -323,5 +321,4 @@ def _matrix_in_words(matrix: Any) -> str:
 
 
 def rows_in_words(matrix: Any) -> str:
-    """A matrix on one line."""
     return "[" + ", ".join("[" + ", ".join(f"{x:g}" for x in row) + "]" for row in matrix) + "]"

@@ -80,7 +80,6 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
 
 
 def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
-    """What the verdict is about."""
     yield "arm", arm_in_words(space.arm, 1 / space.sample_period)
     yield "joint damping", damping_in_words(space.arm)
     yield "region", space.region
@@ -218,7 +217,6 @@ def _print(
 
 
 def _written(better: BorneImpedance) -> str:
-    """The impedance in a line, and what of it was changed."""
     k, zeta = (
         ", ".join(f"{float(v):g}" for v in row[: better.size]) for row in (better.stiffness, better.factors)
     )

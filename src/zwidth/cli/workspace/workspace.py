@@ -130,7 +130,6 @@ def _give_out(
 
 
 def _verdict(arguments: argparse.Namespace) -> Workspace:
-    """The verdict that is asked for."""
     from zwidth.passivity.workspace import workspace
 
     arm = arm_of(arguments)
@@ -196,7 +195,6 @@ def _check_gains(arguments: argparse.Namespace, save: Path | None) -> None:
 
 
 def _borne(arguments: argparse.Namespace, arm: Arm) -> BorneImpedance:
-    """The impedance that is written."""
     from zwidth.data.gains import borne_impedance
 
     return borne_impedance(
@@ -221,7 +219,6 @@ def _null_space(arguments: argparse.Namespace, plot: Path | None, save: Path | N
 
 
 def _save(space: Workspace | PostureMap, path: Path) -> None:
-    """The verdict with its certificate, or the map."""
     if path.suffix.lower() == ".json":
         space.save(path)
     else:
@@ -231,7 +228,6 @@ def _save(space: Workspace | PostureMap, path: Path) -> None:
 
 
 def _largest(text: str | None, option: str) -> list[float] | None:
-    """A force, and in pose a moment."""
     if text is None:
         return None
     parts, units = text.split(","), ("N", "N*m")
@@ -262,7 +258,6 @@ def refuse_without(arguments: argparse.Namespace) -> None:
 
 
 def null_space_of(arguments: argparse.Namespace) -> NullSpace:
-    """The answer that is asked for."""
     from zwidth.passivity.workspace import null_space
 
     for key in _OF_OTHERS:
@@ -283,7 +278,6 @@ def null_space_of(arguments: argparse.Namespace) -> NullSpace:
 
 
 def _gains(arguments: argparse.Namespace) -> tuple[Any, Any]:
-    """k and d_n, as given or as in the file of the wall."""
     if arguments.null_stiffness != _FROM_WALL:
         return arguments.null_stiffness, arguments.null_damping or "0"
     if arguments.wall is None or not is_of_controllers(Path(arguments.wall)):

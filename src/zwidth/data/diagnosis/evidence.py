@@ -174,8 +174,6 @@ class _Aligned(NamedTuple):
 
 
 class _Fitted(NamedTuple):
-    """What the forces follow, and what lies between them."""
-
     law: Law | None
     stated: Stated | None
     commanded: Array | None

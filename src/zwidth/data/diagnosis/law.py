@@ -150,8 +150,6 @@ def known(
 
 
 class _Tried(NamedTuple):
-    """One combination of terms, as fitted."""
-
     bic: float
     left: float
     lag: float

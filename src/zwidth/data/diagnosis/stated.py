@@ -124,8 +124,6 @@ def _last(laws: list[RenderingLaw], kind: type[Last]) -> Last | None:
 
 
 class _Parts(NamedTuple):
-    """A law, and what stands behind it."""
-
     bare: Environment
     helping: FrictionCompensation | None
     limit: float

@@ -139,7 +139,6 @@ def _stiff(joint: CoupledJoint, leader: Fraction, follower: Fraction) -> Coupled
 
 
 def _ratio(joint: CoupledJoint) -> Fraction:
-    """K_f/K_l."""
     leader, follower = joint.gains
     return follower.stiffness / leader.stiffness
 

@@ -155,7 +155,6 @@ class CoupledJoint:
         }
 
     def _side(self, device: Device, gains: Gains) -> tuple[Device, Fraction]:
-        """The device, and D of its controller."""
         if not self.is_ideal:
             return device, gains.local_damping
         braked = device.exact("damping") + gains.damping + gains.local_damping

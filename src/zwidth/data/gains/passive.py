@@ -187,8 +187,6 @@ def share_of(given: RealLike) -> Fraction:
 
 @dataclass(frozen=True)
 class _Joint:
-    """One joint with the damping that its gains may use."""
-
     law: JointLaw
     device: Device
     loops: Loops
@@ -210,7 +208,6 @@ class _Joint:
         return proved
 
     def _lacking(self) -> str:
-        """Why no spring is."""
         if self.device.exact("resolution") and not self.device.exact("coulomb_friction"):
             return (
                 f"encoder steps of {shown(self.device.resolution, 'rad')} take Coulomb friction, and none "

@@ -339,6 +339,5 @@ def _damping(joint: CoupledJoint) -> str:
 
 
 def _sides(leader: Fraction, follower: Fraction) -> str:
-    """One number, or leader / follower."""
     first, second = (f"{float(value):.4g}" for value in (leader, follower))
     return first if first == second else f"{first}/{second}"

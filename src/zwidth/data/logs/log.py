@@ -316,7 +316,6 @@ def _blocks(
 
 
 def _on(grid: Grid | None, position: Array) -> Array:
-    """Whole multiples of the step."""
     if grid is None:
         return position
     counts = position - grid.offset if grid.offset else position.copy()

@@ -128,7 +128,6 @@ class Cutter:
 
 
 def _same_as_before(rows: Rows, places: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Where a row holds the numbers of the one before it."""
     same = np.ones(places.size, dtype=bool)
     for column in rows[1:]:
         if column is not None:

@@ -114,7 +114,6 @@ def _refined(levels: Array, step: float) -> float:
 
 
 def _short(value: float, uncertainty: float) -> float:
-    """The shortest decimal within the uncertainty."""
     for digits in range(3, 17):
         text = float(f"{value:.{digits - 1}e}")
         if abs(text - value) <= uncertainty:
@@ -249,7 +248,6 @@ class Stops:
 
     @property
     def _range(self) -> float:
-        """From the smallest reading to the largest."""
         return float(self._ends[-1][0][0] + self._ends[1][0][0])
 
 

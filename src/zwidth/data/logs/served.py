@@ -376,7 +376,6 @@ class Mcap:
         self.lost += max(0, file.stat().st_size - end)
 
     def _known(self, channel: Topic) -> Topic | None:
-        """The channel if its messages can be read."""
         encoding = channel.msgtype[0]
         if channel.msgtype not in self._decoders:
             self._decoders[channel.msgtype] = (

@@ -277,7 +277,6 @@ class Parser:
         return lines
 
     def _loaded(self, lines: bytes, names: list[str], kind: str) -> dict[str, Values]:
-        """Columns of one kind."""
         layout = self.layout
         table: Values = np.loadtxt(
             TextIOWrapper(BytesIO(lines), encoding="utf-8"),

@@ -115,7 +115,6 @@ def instruct(q: Array, memory: Array, phi: Array, zeta: Array, wants: Array, y: 
 
 @compiled
 def _product(r: Array, i: int, j: int) -> float:
-    """An element of RᵀR."""
     return r[i] * r[j] + r[3 + i] * r[3 + j] + r[6 + i] * r[6 + j]
 
 

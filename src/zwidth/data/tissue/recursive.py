@@ -293,6 +293,7 @@ def track_five_parameters(
     sample_period: RealLike,
     *,
     forgetting: RealLike = "0.999",
+    initial_covariance: float = 1e6,
 ) -> Mapping[str, Array]:
     """The published regression on five parameters, beside which there is a line of others as good.
 
@@ -309,6 +310,8 @@ def track_five_parameters(
         T > 0 [s].
     forgetting
         λ. Default 0.999.
+    initial_covariance
+        P at the start, times the identity.
 
     Returns
     -------
@@ -331,7 +334,7 @@ def track_five_parameters(
     if x.ndim != 1 or x.shape != f.shape:
         raise InputError("position and force are two arrays of one length")
     out = np.full((6, x.size), np.nan)
-    p = (1e6 * np.eye(5)).ravel()
+    p = (initial_covariance * np.eye(5)).ravel()
     recursion.run_five(np.zeros(5), p, np.zeros(10), x, f, keep, out)
     a1, b1, b3 = out[0], out[2], out[4]
     viscous = a1 * b1 - b1 - b3

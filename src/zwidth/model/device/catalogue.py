@@ -167,7 +167,6 @@ _DEVICE_KEY = {"rate": "sample_period", "counts_per_turn": "resolution", "inerti
 
 
 def _arguments(found: Entry, overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """What is published, what was given in its place."""
     given = {key: _override(found, key, value) for key, value in overrides.items()}
     said = {_DEVICE_KEY.get(key, key) for key in given}
     known = {key: value for key, value in found.known().items() if _DEVICE_KEY.get(key, key) not in said}

@@ -91,9 +91,8 @@ class SoftTouch(ParametricOperator):
 class TypicalTouch(Finger):
     """A finger that comes at a moderate speed, 0.1 m/s, and presses with 2 N.
 
-    ``f_h = k (x_a(t) − x) + c (ẋ_a(t) − ẋ) − m_h ẍ``, as `Finger`, with its
-    numbers. Speed, force and start are chosen: Abbott & Okamura (2005, section
-    IV-C) print none for their "typical" touch.
+    ``f_h = k (x_a(t) − x) + c (ẋ_a(t) − ẋ) − m_h ẍ``, as `Finger`, with its numbers. Speed, force and start
+    are chosen: Abbott & Okamura (2005, section IV-C) print none for their "typical" touch.
 
     Parameters
     ----------

@@ -137,7 +137,7 @@ class Theorem:
             (self.counts_delay, device.exact("delay") > 0, "a delay"),
             (self.counts_force_steps, device.force_resolution is not None, "the converter's steps"),
             (self.counts_force_limit, device.force_limit is not None, "the force limit"),
-            (self.counts_current_rise, _rises_slowly(device), "a current that rises slowly"),
+            (self.counts_current_rise, current_rise(device).ok is False, "a current that rises slowly"),
         )
         lacking = [f"{what}, not counted by the proof" for counts, there, what in record if there > counts]
         has, unit = device.exact("coulomb_friction"), quantity_unit("coulomb_friction", device.motion)
@@ -161,8 +161,3 @@ class Theorem:
 def half_a_step(device: Device) -> Fraction:
     """ΔF/2, the most by which the converter errs; 0 where its step is not known [N; N·m]."""
     return Fraction(0) if device.force_resolution is None else device.exact("force_resolution") / 2
-
-
-def _rises_slowly(device: Device) -> bool:
-    """True where the record says that the force cannot be taken as instant."""
-    return current_rise(device).ok is False

@@ -51,10 +51,9 @@ def passive_limit(
 ) -> Bracket:
     """How far a parameter may go: proved passive on one side, refuted by a motion on the other.
 
-    Contact is made and broken at will, unless `contact` says otherwise.  Without
-    bounds on the hand the closed conditions are tried first, which cover every hand;
-    where they end, and always where the hand is bounded, values are iterated as in
-    `available_storage`.
+    Contact is made and broken at will, unless `contact` says otherwise.  Without bounds on the hand the
+    closed conditions are tried first, which cover every hand; where they end, and always where the hand is
+    bounded, values are iterated as in `available_storage`.
 
     Parameters
     ----------

@@ -206,7 +206,6 @@ def _arrays(inputs: ArrayLike, positions: ArrayLike, energies: ArrayLike) -> tup
 
 
 def _matrix(damping: ArrayLike, joints: int) -> Floats:
-    """Λ as a matrix."""
     given = np.asarray(damping, dtype=np.float64)
     matrix = given * np.eye(joints) if given.ndim == 0 else given
     if matrix.shape != (joints, joints) or not np.array_equal(matrix, matrix.T):

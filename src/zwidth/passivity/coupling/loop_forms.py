@@ -128,7 +128,6 @@ def _polynomial(cosines: Cosines) -> fmpq_poly:
 
 
 def _holds(p: fmpq_poly) -> bool:
-    """p ≥ 0 on [−1, 1]."""
     return isinstance(prove_nonnegative(p.numer()), Positivity)
 
 
@@ -200,7 +199,6 @@ def _supply(connection: Connection, d: int) -> list[Term]:
 
 
 def _move(connection: Connection) -> Signal:
-    """e = D − a."""
     return [-c for c in connection[1]], _ONE
 
 

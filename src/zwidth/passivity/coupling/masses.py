@@ -223,7 +223,6 @@ def _span(low: float, high: float, unit: str) -> str:
 
 
 def _stated(verdict: LinearVerdict, key: str) -> dict[str, Any]:
-    """What one mass is proved to be."""
     return {
         key: _mass(verdict),
         "outcome": verdict.outcome,

@@ -12,9 +12,8 @@ impedance, in their discrete model,
     Z_d = m s + b,  s = (2/T)(z − 1)/(z + 1),   ZOH = ½ (1 + z⁻¹)
     Re{1/Z_c} ≥ (1 − cos∠ZOH) |ZOH|/(2 Re Z_d),   Z_c = B_c + K_c T z/(z − 1)
 
-The hold is an average of samples there, and what happens between them is left
-out.  Held exactly, with positions sampled and velocities their backward
-difference, ZOH becomes z⁻¹ and the same conditions become
+The hold is an average of samples there, and what happens between them is left out.  Held exactly, with
+positions sampled and velocities their backward difference, ZOH becomes z⁻¹ and the same conditions become
 
     b ≥ (1 − cos θ)/(2 Re{1/Z_c})
 
@@ -217,7 +216,6 @@ def _hold(device: Device, hold: str, z: Complex, hertz: NDArray[np.float64]) -> 
 def _dataset(
     hertz: NDArray[np.float64], p11: Complex, p22: Complex, product: Complex, size: Any, need: Any
 ) -> xr.Dataset:
-    """The three conditions over frequency, and the verdict."""
     import xarray as xr
 
     asked = size + product.real

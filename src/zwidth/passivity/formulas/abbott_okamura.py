@@ -63,11 +63,10 @@ def quantized_kelvin_voigt_friction(
 ) -> Exact:
     """f_c ≥ (|K + B/T| + |B|/T) Δ/2 for f = K x + B (x(k) − x(k−1))/T behind an encoder.
 
-    For B ≥ 0 that is (K + 2B/T) Δ/2, for −K T ≤ B ≤ 0 it is K Δ/2, and in both
-    cases it is necessary too.  For B < −K T it is (2|B|/T − K) Δ/2 and only
-    sufficient: crossing one edge to and fro shows that K Δ/2 is necessary.
-    It comes beside b ≥ K T/2 + |B|, for sustained contact, without delay; for
-    B ≥ 0 it covers contact made and broken too (`damped_wall_friction`).
+    For B ≥ 0 that is (K + 2B/T) Δ/2, for −K T ≤ B ≤ 0 it is K Δ/2, and in both cases it is necessary too.
+    For B < −K T it is (2|B|/T − K) Δ/2 and only sufficient: crossing one edge to and fro shows that K Δ/2 is
+    necessary.  It comes beside b ≥ K T/2 + |B|, for sustained contact, without delay; for B ≥ 0 it covers
+    contact made and broken too (`damped_wall_friction`).
 
     Parameters
     ----------
@@ -223,9 +222,8 @@ def fast_press(device: Device, stiffness: RealLike, counts: int | None = None) -
 
         W = (nΔ + 2ε) [n Δ K − 2f_c − 2 (b/T)(nΔ + 2ε)]
 
-    positive for small ε if n > f_c/(Δ (K/2 − b/T)); close to the limit that is
-    a very fast hand: more than 10 714 counts, 240 m/s, for K = 301 N/m on the
-    paddle (Abbott & Okamura 2005, section III-C).
+    positive for small ε if n > f_c/(Δ (K/2 − b/T)); close to the limit that is a very fast hand: more than 10
+    714 counts, 240 m/s, for K = 301 N/m on the paddle (Abbott & Okamura 2005, section III-C).
 
     Parameters
     ----------

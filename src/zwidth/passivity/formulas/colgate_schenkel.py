@@ -54,9 +54,8 @@ def window_damping(
 ) -> Exact | float:
     """b ≥ K T/2 + c_N |B| for f = K x + B (x(k) − x(k−N))/(N T), without delay.
 
-    The criterion asks for K T/2 − (B/N) (cos θ + cos 2θ + … + cos Nθ), θ = ωT.
-    For B ≤ 0 it is tightest towards ω = 0: c_N = 1 for every N.  For B > 0 the
-    smallest value of the sum decides:
+    The criterion asks for K T/2 − (B/N) (cos θ + cos 2θ + … + cos Nθ), θ = ωT.  For B ≤ 0 it is tightest
+    towards ω = 0: c_N = 1 for every N.  For B > 0 the smallest value of the sum decides:
 
         c_1 = 1,    c_2 = 9/16,    c_3 = (17 + 7√7)/81
 
@@ -126,11 +125,10 @@ def spring_damping(stiffness: RealLike, sample_period: RealLike, delay: RealLike
 
         (α g + (1 − α) h) Δx + (b/T) Δx² − (T α(1 − α)/4b) (g − h)²
 
-    Sufficient: with V' = f, f(k) Δx ≥ ΔV − ½ K Δx²; a force i samples older
-    differs by at most K times the path since, so that over all intervals
-    the delay costs at most (d + α) K Σ Δx²; and |g − h| ≤ K |Δx|.  Hence
-    b/T ≥ K (½ + d + α) + T α(1 − α) K²/4b is enough.  Necessary: a slow
-    sinusoid inside a linear spring needs that much as ω → 0.
+    Sufficient: with V' = f, f(k) Δx ≥ ΔV − ½ K Δx²; a force i samples older differs by at most K times the
+    path since, so that over all intervals the delay costs at most (d + α) K Σ Δx²; and |g − h| ≤ K |Δx|.
+    Hence b/T ≥ K (½ + d + α) + T α(1 − α) K²/4b is enough.  Necessary: a slow sinusoid inside a linear spring
+    needs that much as ω → 0.
     """
     k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
     t = positive("sample_period", sample_period, NO_CLOCK)
@@ -178,10 +176,9 @@ def damped_wall_damping(
 ) -> Exact:
     """b ≥ (2d + 1) K T/2 + |B| for a damped wall with contact made and broken, clamped or not.
 
-    For every estimate of velocity whose weights are ≥ 0 and sum to 1: backward
-    difference, window, one-pole filter.  With the backward difference, without
-    delay, it is necessary too (clamped: for K > 0), for then the linear criterion
-    in sustained contact asks for as much.
+    For every estimate of velocity whose weights are ≥ 0 and sum to 1: backward difference, window, one-pole
+    filter.  With the backward difference, without delay, it is necessary too (clamped: for K > 0), for then
+    the linear criterion in sustained contact asks for as much.
 
     Parameters
     ----------

@@ -10,8 +10,7 @@ a hand that moves ξ counts in one sample loses at least
 
     K Δ² ξ [(β − ½) ξ + (σ − ½)]
 
-against the spring ½ K (x − Δ/2)² (derived for this project, see
-`admissible_speed`).
+against the spring ½ K (x − Δ/2)² (derived for this project, see `admissible_speed`).
 """
 
 from __future__ import annotations
@@ -21,8 +20,8 @@ from math import inf
 from typing import Literal, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.model.device import Device
-from zwidth.passivity.formulas.abbott_okamura import quantized_wall
+from zwidth.model.device import Device, catalogue
+from zwidth.passivity.formulas.abbott_okamura import quantized_wall, stiffness_of_wall
 from zwidth.quantity.exact import Exact, RealLike
 
 Region = Literal["globally stable", "limit cycles", "globally unstable", "locally stable"]
@@ -44,9 +43,8 @@ class PlanePoint(NamedTuple):
     def region(self) -> Region:
         """Where the point lies (Diolaiti, Niemeyer, Barbagli & Salisbury 2006).
 
-        "globally stable" (passive, edges included), "limit cycles" (small
-        motions gain energy, large ones lose it), "locally stable" (the reverse),
-        "globally unstable".
+        "globally stable" (passive, edges included), "limit cycles" (small motions gain energy, large ones
+        lose it), "locally stable" (the reverse), "globally unstable".
         """
         fast, small = _at_least_half(self.viscous), _at_least_half(self.dry)
         if fast:
@@ -56,9 +54,8 @@ class PlanePoint(NamedTuple):
     def cycle_loss(self, step: RealLike, start: Start = "inside") -> Exact | float:
         """W/(2 K Δ² ξ) = (β − ½) ξ + σ − ½, or (β − ½) ξ + σ from the surface.
 
-        W is what the hand loses by one sample in and one sample out: "inside"
-        from just below one edge to just past the last, "surface" from x = 0 to
-        ξ Δ.  Negative where the cycle gains energy.
+        W is what the hand loses by one sample in and one sample out: "inside" from just below one edge to
+        just past the last, "surface" from x = 0 to ξ Δ.  Negative where the cycle gains energy.
 
         Parameters
         ----------
@@ -136,6 +133,35 @@ def admissible_speed(device: Device, stiffness: RealLike, start: Start = "inside
     if surplus < 0:
         return Exact(0)
     return Exact(surplus / deficit) if deficit > 0 else inf
+
+
+def catalogue_coordinates(stiffness: RealLike) -> dict[str, tuple[Exact | None, Exact | None]]:
+    """(β, σ) of every catalogue device at one stiffness, None where a source is missing.
+
+    Devices with neither are left out; with one, the device lies on a line of
+    the plane.
+
+    Parameters
+    ----------
+    stiffness
+        K > 0 [N/m; N·m/rad].
+    """
+    k = stiffness_of_wall(stiffness)
+    marks = {name: _coordinates(catalogue.entry(name).known(), k) for name in catalogue.names()}
+    return {name: mark for name, mark in marks.items() if mark != (None, None)}
+
+
+def _coordinates(known: dict[str, Exact], k: Fraction) -> tuple[Exact | None, Exact | None]:
+    value = {key: number.fraction for key, number in known.items()}
+    if "rate" in value:
+        value["sample_period"] = 1 / value["rate"]
+    return _ratio(value, "damping", "sample_period", k), _ratio(value, "coulomb_friction", "resolution", k)
+
+
+def _ratio(value: dict[str, Fraction], top: str, bottom: str, k: Fraction) -> Exact | None:
+    if top not in value or not value.get(bottom):
+        return None
+    return Exact(value[top] / (k * value[bottom]))
 
 
 def _at_least_half(value: float) -> bool:

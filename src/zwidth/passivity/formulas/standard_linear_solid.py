@@ -26,10 +26,9 @@ def standard_linear_solid_damping(
 ) -> Exact:
     """b ≥ μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T) by backward Euler, (μ0 + μ1) T/2 by Tustin's rule.
 
-    H(s) = μ0 + μ1 η1 s/(μ1 + η1 s), without delay.  For μ1, η1 > 0 the criterion
-    is monotone in 1 − cos ωT and tightest at the Nyquist frequency.  By
-    Tustin's rule the branch costs μ1 T/2 however small η1 is, although with
-    η1 = 0 it is absent: the limit η1 → 0 is not the value there.
+    H(s) = μ0 + μ1 η1 s/(μ1 + η1 s), without delay.  For μ1, η1 > 0 the criterion is monotone in 1 − cos ωT
+    and tightest at the Nyquist frequency.  By Tustin's rule the branch costs μ1 T/2 however small η1 is,
+    although with η1 = 0 it is absent: the limit η1 → 0 is not the value there.
 
     Parameters
     ----------

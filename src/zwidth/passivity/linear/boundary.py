@@ -1,8 +1,7 @@
 """The last value of a parameter at which a decision still holds, to the last double.
 
-A decision is exact at every rational, so its boundary can be found by halving
-the ordered doubles themselves: the answer is a number a person can type, at
-which the claim was decided, next to one at which it fails.
+A decision is exact at every rational, so its boundary can be found by halving the ordered doubles themselves:
+the answer is a number a person can type, at which the claim was decided, next to one at which it fails.
 """
 
 from __future__ import annotations
@@ -31,10 +30,9 @@ Holds = Callable[[Fraction], bool]
 def largest_holding(holds: Holds, guess: float, grain: int = 1, likely: float | None = None) -> float | None:
     """The largest double in range where `holds` is true, true below and false above it.
 
-    Returns 0.0 if it holds at 0 but nowhere in range, inf if it holds
-    throughout, None if it fails even at 0.  With a `grain` the answer is only
-    that many doubles near.  Where it probably is, `likely`, is looked at first,
-    and then from `guess` on.
+    Returns 0.0 if it holds at 0 but nowhere in range, inf if it holds throughout, None if it fails even at 0.
+    With a `grain` the answer is only that many doubles near.  Where it probably is, `likely`, is looked at
+    first, and then from `guess` on.
     """
     return _search(holds, guess, True, grain, likely)
 

@@ -4,10 +4,9 @@ Walls with virtual damping:
 
     b ≥ (2d + 1) K T/2 + |B| Σ|w_j|          f_c ≥ (K + |B| ‖h_v‖₁) Δ/2
 
-for the force K max(q, 0) + r of the measured position q, applied d samples
-later, with any |r| ≤ |B| |v|, v(k) = Σ w_j (q(k−j) − q(k−j−1))/T.  That is the
-wall that acts inside only, r = B v there, and the clamped wall max(0, K q + B v);
-h_v is the impulse response from q to v.  Applied d + α samples later, 0 < α < 1,
+for the force K max(q, 0) + r of the measured position q, applied d samples later, with any |r| ≤ |B| |v|,
+v(k) = Σ w_j (q(k−j) − q(k−j−1))/T.  That is the wall that acts inside only, r = B v there, and the clamped
+wall max(0, K q + B v); h_v is the impulse response from q to v.  Applied d + α samples later, 0 < α < 1,
 
     b (b − Q) ≥ α(1 − α) (K T + 2 |B| Σ|w_j|)²/4,    Q = (2d + 1 + 2α) K T/2 + |B| Σ|w_j| ≤ b
 

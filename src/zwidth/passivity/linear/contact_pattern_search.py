@@ -348,7 +348,6 @@ def _cholesky(a: Matrix) -> Matrix | None:
 
 
 def _solve_transposed(low: Matrix, right: Row) -> Row:
-    """Lᵀ y = right."""
     n = len(low)
     y = list(right)
     for i in reversed(range(n)):

@@ -1,7 +1,6 @@
 """The linear criterion, decided exactly for one loop and over an interval of delays; where it is tightest.
 
-Passive exactly if q(c) ≥ 0 on [−1, 1] (see `loop`) and H is stable, in one of
-two exact senses:
+Passive exactly if q(c) ≥ 0 on [−1, 1] (see `loop`) and H is stable, in one of two exact senses:
 
 open loop
     every pole of H is inside the unit circle and H(1) ≥ 0.  A motion that ends
@@ -12,9 +11,8 @@ closed loop, for α = 0
     Re(n d̄) ≥ 0 on the circle, since (n − g d)/(n + g d) is then bounded by 1
     outside it.  This also decides poles on the unit circle.
 
-For 0 < α < 1 a pole on the unit circle makes q negative beside it.
-Necessity: Colgate & Schenkel 1997; sufficiency with stability: Fardad &
-Bamieh 2009; the fractional delay is derived in the documentation.
+For 0 < α < 1 a pole on the unit circle makes q negative beside it. Necessity: Colgate & Schenkel 1997;
+sufficiency with stability: Fardad & Bamieh 2009; the fractional delay is derived in the documentation.
 """
 
 from __future__ import annotations

@@ -176,7 +176,6 @@ class LinearLoop:
 
 
 def _over(p: fmpq_poly, places: list[arb]) -> list[arb]:
-    """p at each of the places."""
     scale = arb(p.denom())
     return [value / scale for value in arb_poly(p.numer()).evaluate(places, algorithm="iter")]
 

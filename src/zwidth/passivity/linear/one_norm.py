@@ -121,7 +121,6 @@ def _bound(
 
 
 def _size(p: fmpq_poly) -> Fraction:
-    """Σ|c| of the coefficients."""
     return Fraction(sum(abs(int(c)) for c in p.numer().coeffs()), int(p.denom()))
 
 

@@ -1,9 +1,8 @@
 """Is an integer polynomial ≥ 0 on all of [−1, 1]?  Decided exactly.
 
-The polynomial is written as (1 − c)ⁱ (1 + c)ʲ s(c)² g(c) with g squarefree and
-not zero at ±1, so that touching zero, at the ends or inside, is told apart
-from crossing it.  Then g > 0 on [−1, 1] is decided by Descartes' rule of signs
-on halved intervals (Vincent, Collins & Akritas): no grid, no rounding.
+The polynomial is written as (1 − c)ⁱ (1 + c)ʲ s(c)² g(c) with g squarefree and not zero at ±1, so that
+touching zero, at the ends or inside, is told apart from crossing it.  Then g > 0 on [−1, 1] is decided by
+Descartes' rule of signs on halved intervals (Vincent, Collins & Akritas): no grid, no rounding.
 """
 
 from __future__ import annotations

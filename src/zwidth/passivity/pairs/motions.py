@@ -248,7 +248,6 @@ def _rubbed(pair: Pair, one: list[Motion], times: int) -> Fraction:
 
 
 def _simple(value: Fraction) -> Fraction:
-    """A decimal of two digits at or above."""
     power = Fraction(1)
     while value * power < 10:
         power *= 10

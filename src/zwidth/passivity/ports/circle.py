@@ -3,8 +3,7 @@
     s = (1 − ζ)/(1 + ζ)   continuous: Re s > 0 is |ζ| < 1, ω = tan(θ/2)
     z = 1/ζ               discrete:   |z| > 1 is |ζ| < 1, ωT = θ
 
-On the circle ζ = e^{−jθ}, with c = cos θ: ω² = (1 − c)/(1 + c), and c = −1 is ω = ∞ or the
-Nyquist frequency.
+On the circle ζ = e^{−jθ}, with c = cos θ: ω² = (1 − c)/(1 + c), and c = −1 is ω = ∞ or the Nyquist frequency.
 
     sin²θ = 1 − c²   makes the numbers a ring; the conjugate is a − j sin θ · b
 

@@ -263,7 +263,6 @@ def _grown(
 
 
 def _units(kind: Kind, head: tuple[Fraction, ...], axes: int, terms: int) -> Iterator[Motion]:
-    """Every motion of one number alone."""
     for one in range(axes * terms):
         numbers = [Fraction(int(k == one)) for k in range(axes * terms)]
         yield Motion(kind, head, _by_axis(numbers, axes))
@@ -310,7 +309,6 @@ def index_document(name: str, port: Port, level: Fraction, evidence: dict[str, A
 
 
 def _system_document(port: Port) -> dict[str, Any]:
-    """G of a port from inputs to outputs."""
     denominator = _text(reversed(port.denominator))
     if port.axes == 1:
         numerator = _text(reversed(port.outputs[0][0]))

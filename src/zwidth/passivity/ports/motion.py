@@ -75,13 +75,11 @@ def _paired(
 
 
 def _dotted(p: fmpq_poly, q: fmpq_poly) -> fmpq:
-    """Σ p_k q_k."""
     both = zip(p.numer().coeffs(), q.numer().coeffs(), strict=False)
     return fmpq(sum((a * b for a, b in both), fmpz(0)), p.denom() * q.denom())
 
 
 def _integral(p: fmpq_poly, q: fmpq_poly) -> fmpq:
-    """∫ p q dx over [0, 1]."""
     return (p * q).integral()(1)
 
 
@@ -112,8 +110,6 @@ def _in_samples(port: Port, latent: Signals, length: int) -> tuple[Signals, Sign
 def _both_sides(
     port: Port, latent: Signals, apply: Callable[[fmpq_poly, Sequence[int]], fmpq_poly]
 ) -> tuple[Signals, Signals]:
-    """D φ and N φ."""
-
     def answer_of(side: Polynomials) -> Signals:
         return [
             sum((apply(phi, p) for phi, p in zip(latent, row, strict=True)), fmpq_poly([])) for row in side
@@ -129,7 +125,6 @@ def _shifted(phi: fmpq_poly, ascending: Sequence[int], order: int, length: int) 
 
 
 def _differentiated(phi: fmpq_poly, ascending: Sequence[int], pace: fmpq) -> fmpq_poly:
-    """Σ c_i φ⁽ⁱ⁾ paceⁱ, in x = t·pace."""
     total = fmpq_poly([])
     for c in ascending:
         total += c * phi

@@ -219,7 +219,6 @@ def in_lowest_terms(
 def _quotient(
     top: list[list[fmpq_poly]], bottom: list[list[fmpq_poly]]
 ) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
-    """top·bottom⁻¹, as of `in_lowest_terms`."""
     found = leverrier(bottom, fmpq_poly([1]))
     return in_lowest_terms(multiplied(top, found.adjugate), found.minors[-1])
 

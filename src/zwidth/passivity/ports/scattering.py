@@ -301,7 +301,6 @@ def _lower(value: float) -> Fraction:
 
 
 def _holds(waves: Port, level: Fraction) -> bool:
-    """‖S‖∞ ≤ level, and S is stable."""
     return prove_level(power_of(waves, level), Fraction(0)) is not None
 
 

@@ -1,9 +1,8 @@
 """A grid of the dynamic program: positions, memory and forces in whole numbers.
 
-A cell is one encoder count, cut into small steps; the hand stands on some of
-them, its nodes, both edges of the cell among them.  A state is the cell n, the
-last differences e_i = n_{k−i} − n_{k−i+1} and a node.  Forces are whole multiples
-of one small unit, so that energies are whole multiples of unit × step and nothing
+A cell is one encoder count, cut into small steps; the hand stands on some of them, its nodes, both edges of
+the cell among them.  A state is the cell n, the last differences e_i = n_{k−i} − n_{k−i+1} and a node.
+Forces are whole multiples of one small unit, so that energies are whole multiples of unit × step and nothing
 is rounded while values are iterated.
 
 Two approximations of what a hand can do, one for each side of the bracket:
@@ -333,9 +332,8 @@ class Grid:
     def first_guess(self) -> Integers:
         """Where the search for a storage function starts: that of a damped wall, rounded.
 
-        V = ∫ f from the middle of the first cell + ½ Σ_j (Σ_{i≥j} |w_i|) d_j², d_j the
-        least the hand can have moved.  Any start ends at a storage function if
-        there is one; from this one the search is short.
+        V = ∫ f from the middle of the first cell + ½ Σ_j (Σ_{i≥j} |w_i|) d_j², d_j the least the hand can
+        have moved.  Any start ends at a storage function if there is one; from this one the search is short.
         """
         energy = self._spring_energy()[:, None, :] + np.zeros((1, self.histories, 1))
         weights = self._lag_weights()

@@ -10,10 +10,9 @@ Most of that hull is the same for all nodes of a group.  With d = y − x,
 
     −f d − φ |d| − β d²  =  −β y² − (f ± φ − 2 β x) y  +  what y does not change
 
-so that only corners of the upper hull of (y, V(s') − β y²) can be best, on each
-side of the hand, and of these only corners between the slopes that occur.  Left
-out of this are moves of less than two steps, which cost φ |d| alone, and the
-farthest cells, of which not every point is in reach of every node.
+so that only corners of the upper hull of (y, V(s') − β y²) can be best, on each side of the hand, and of
+these only corners between the slopes that occur.  Left out of this are moves of less than two steps, which
+cost φ |d| alone, and the farthest cells, of which not every point is in reach of every node.
 
 Among equally good moves the one with the least d is taken.
 

@@ -7,10 +7,9 @@
     f = ΔF ⌊f/ΔF + ½⌋                  what a converter makes of it, where its steps are counted in
     |f| ≤ F_max                        likewise the force limit, after the converter
 
-q is the encoder's reading, a whole number of counts.  Laws that remember a few
-readings are here: springs, dampers on differenced counts, windows, filters
-of finite response; and one that never quite forgets, a Maxwell branch or a
-one-pole filter (see `relaxing`).
+q is the encoder's reading, a whole number of counts.  Laws that remember a few readings are here: springs,
+dampers on differenced counts, windows, filters of finite response; and one that never quite forgets, a
+Maxwell branch or a one-pole filter (see `relaxing`).
 """
 
 from __future__ import annotations

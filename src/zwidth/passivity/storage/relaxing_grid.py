@@ -4,10 +4,9 @@ A Maxwell branch or a one-pole filter gives
 
     y = g (u_k − a_k),      a_{k+1} = p a_k + (1 − p) u_k
 
-a the average of all readings before, with weights that die out.  V is linear
-between levels of a as well.  A move from a leads to an a' that moves by p times as
-much, so that between two neighbouring levels V(s', a') has one kink at most: a
-move that is harmless at both levels and at that kink is harmless between them.
+a the average of all readings before, with weights that die out.  V is linear between levels of a as well.  A
+move from a leads to an a' that moves by p times as much, so that between two neighbouring levels V(s', a')
+has one kink at most: a move that is harmless at both levels and at that kink is harmless between them.
 
 The best moves on the levels make no cycle by themselves, as a lies between them.  So a hand that
 follows them is watched, with the average as it really becomes.

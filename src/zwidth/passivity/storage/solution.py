@@ -126,9 +126,8 @@ def available_storage(
 
         −f Δx − f_c |Δx| − (b/T) Δx²
 
-    The loop is passive exactly if no cycle of moves gains.  Then the most that can
-    be taken out from each state, V, is finite, and V(s) ≥ reward + V(s') for every
-    move is the proof.
+    The loop is passive exactly if no cycle of moves gains.  Then the most that can be taken out from each
+    state, V, is finite, and V(s) ≥ reward + V(s') for every move is the proof.
 
     Parameters
     ----------

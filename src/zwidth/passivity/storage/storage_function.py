@@ -53,7 +53,6 @@ class StorageFunction:
         return Certificate((self._document("storage", self.grid.law_document(self.motion)),))
 
     def _document(self, kind: str, law: dict[str, Any], **tables: Any) -> dict[str, Any]:
-        """What every such proof states."""
         return {
             "format": FORMAT,
             "kind": kind,

@@ -2,9 +2,8 @@
 
     V(s) ← max( V(s), max over moves of  −f Δx − cost(Δx) + V(s') )
 
-until nothing improves, which is a storage function, or until the best moves close a
-cycle, which then gains (Bellman and Ford).  All numbers are whole, so that "nothing
-improves" is exact.
+until nothing improves, which is a storage function, or until the best moves close a cycle, which then gains
+(Bellman and Ford).  All numbers are whole, so that "nothing improves" is exact.
 
 What differs from grid to grid is its sweep: the kernel that improves a part of V, and how
 a gaining cycle is read from what the kernel leaves.
@@ -130,7 +129,6 @@ class BestMoves(Sweep):
         return improved
 
     def _states(self, block: tuple[int, int]) -> slice:
-        """Where the states of a block are."""
         first, last = block
         return slice(first * self._in_a_group, last * self._in_a_group)
 

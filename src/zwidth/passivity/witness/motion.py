@@ -95,9 +95,8 @@ class Motion:
 class Pattern:
     """A motion in whole numbers: w of the law's direct form, x = unit · D w.
 
-    The parts of w between `first` and `last` of each repeat may be done many
-    times; `ends_inside` says that the last move, from the end of w to x = 0,
-    is a step and not part of w.
+    The parts of w between `first` and `last` of each repeat may be done many times; `ends_inside` says that
+    the last move, from the end of w to x = 0, is a step and not part of w.
     """
 
     w: tuple[int, ...]
@@ -108,8 +107,7 @@ class Pattern:
 def realize(loop: LinearLoop, pattern: Pattern, unit: Fraction, offset: Fraction, times: int) -> Motion:
     """The motion x = unit · D w, with the best instants inside samples.
 
-    `offset` is added away from the ends: it moves the hand off the encoder's
-    edges without changing a count.
+    `offset` is added away from the ends: it moves the hand off the encoder's edges without changing a count.
     """
     w = pattern.w
     x = [unit * v for v in convolve(loop.follower, w)]

@@ -171,7 +171,6 @@ def _best_end(free: ReplayedMotion) -> int:
 
 
 def _replay(device: Device, law: Environment, path: Array, pieces: int) -> ReplayedMotion:
-    """The path on numbers of few digits."""
     digits = 8 - floor(log10(abs(path).max()))
     places = tuple(Fraction(f"{x:.{max(digits, 0)}f}") for x in path)
     return ReplayedMotion(device, law, Motion(places, pieces=pieces))

@@ -1,9 +1,8 @@
 """Motions that refute a loop by H(z): sinusoids, and what builds up where the law is not stable.
 
-Where the criterion is negative over a band of frequencies, the fraction p/q
-of simplest denominator in the band gives the shortest periodic motion.  Every
-period takes out energy and returns the loop to its state; enough of them pay
-for going in and out.
+Where the criterion is negative over a band of frequencies, the fraction p/q of simplest denominator in the
+band gives the shortest periodic motion.  Every period takes out energy and returns the loop to its state;
+enough of them pay for going in and out.
 """
 
 from __future__ import annotations
@@ -117,9 +116,8 @@ def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0)
 def _slow_wave(loop: LinearLoop, unilateral: bool) -> Pattern:
     """One very slow wave: pieces of constant speed, in with the first half and out with the second.
 
-    Where only slow motions gain, the length of the pieces is what decides; each
-    is one sample, done many times.  Behind a surface the wave stands on a depth
-    that keeps x > 0 while the filter follows.
+    Where only slow motions gain, the length of the pieces is what decides; each is one sample, done many
+    times.  Behind a surface the wave stands on a depth that keeps x > 0 while the filter follows.
     """
     settle = _memory(loop) + 2
     lag = sum(i * abs(c) for i, c in enumerate(loop.follower))

@@ -1,9 +1,8 @@
 """A violation of the linear criterion, by itself a proof that a loop is active, and the motion that shows it.
 
-A frequency at which the criterion is negative, a negative static stiffness or
-an unstable law: each lets a hand take out any amount of energy, whatever
-Coulomb friction and encoder are (docs/theory/criterion.md).  The proof is a
-number and a sign; the motion that shows it is made when it is asked for.
+A frequency at which the criterion is negative, a negative static stiffness or an unstable law: each lets a
+hand take out any amount of energy, whatever Coulomb friction and encoder are (docs/theory/criterion.md).  The
+proof is a number and a sign; the motion that shows it is made when it is asked for.
 """
 
 from __future__ import annotations

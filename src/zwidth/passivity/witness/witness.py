@@ -1,8 +1,7 @@
 """A witness: a hand motion that takes energy out of the loop, recomputed exactly.
 
-Any motion found elsewhere becomes a witness only after the independent checker
-has run it through the loop, encoder and Coulomb friction included, in rational
-arithmetic, and found energy to come out.
+Any motion found elsewhere becomes a witness only after the independent checker has run it through the loop,
+encoder and Coulomb friction included, in rational arithmetic, and found energy to come out.
 """
 
 from __future__ import annotations
@@ -92,9 +91,8 @@ class Setting:
 class Witness(Evidence):
     """A motion from rest at the surface that takes energy out of the device.
 
-    Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx², the
-    force held as the loop holds it, the mass taking part by impulses at the
-    samples that cancel over the motion.
+    Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx², the force held as the loop holds
+    it, the mass taking part by impulses at the samples that cancel over the motion.
     """
 
     setting: Setting

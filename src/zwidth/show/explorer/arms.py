@@ -36,7 +36,6 @@ class Arms:
         page.listen(self.form, self.hear)
 
     def _moved(self) -> None:
-        """The device is another."""
         self._page.state = with_coupling(self._page.state)
         try:
             verdict = pair_verdict(self._page.state)
@@ -50,7 +49,6 @@ class Arms:
         self._card.html = str(pair_card(verdict, None))
 
     def hear(self, event: Event) -> Mapping[str, Any]:
-        """What is moved of the coupling."""
         if event.get("kind") == "release":
             self._released()
             return {}
@@ -98,12 +96,10 @@ def with_coupling(state: State) -> State:
 
 
 def pair_verdict(state: State) -> PairVerdict:
-    """The verdict on both arms."""
     return check_pair(pair_of(pair_tables(state)))
 
 
 def coupling_controls(verdict: PairVerdict) -> tuple[Control, ...]:
-    """What joins the arms, on sliders."""
     pair = verdict.pair
     found = []
     for key in COUPLING_KEYS:
@@ -159,5 +155,4 @@ class LinkPicture:
         return "Shaded: passive. A reading that is a sample older leaves less stiffness."
 
     def clear(self) -> None:
-        """Nothing to draw."""
         self.figure.visible = False

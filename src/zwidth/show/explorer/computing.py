@@ -94,13 +94,11 @@ def operator_of(state: State) -> ParametricOperator:
 
 
 def hand_kind_of(state: State) -> str:
-    """The name of that hand."""
     chosen = state.extras.get("operator", {}).get("type")
     return usual_kind(state.loop().device) if chosen is None else str(chosen)
 
 
 def touched(state: State) -> Touch:
-    """The loop under a hand."""
     loop = state.loop()
     return _touch(loop.device, loop.environment, operator_of(state))
 

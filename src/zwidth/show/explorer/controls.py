@@ -136,7 +136,6 @@ def _of_table(
 
 
 def _of_filter(path: str, label: str, own: Parameter, table: object, value: Any) -> Iterator[Control]:
-    """Which filter of a velocity, and its numbers."""
     assert isinstance(table, Mapping)
     name = str(table["type"])
     yield Control(path, "word", label, meaning=own.meaning, text=name, words=tuple(FILTERS))
@@ -167,7 +166,6 @@ def number_control(path: str, own: Parameter, value: Any, motion: str, label: st
 def _number(
     path: str, label: str, own: Parameter, value: Any, motion: str, bound: str, more: bool = False
 ) -> Control:
-    """A number with its slider."""
     unit = own.unit_for(motion)
     known = isinstance(value, (Exact, int, float)) and not isinstance(value, bool)
     number = float(value) if known else None

@@ -176,18 +176,15 @@ def choice(
 
 
 def flag(path: str, label: str, meaning: str, on: bool) -> dict[str, Any]:
-    """On or off."""
     text = "true" if on else "false"
     return {"path": path, "sort": "flag", "label": label, "meaning": meaning, "text": text}
 
 
 def button(path: str, label: str) -> dict[str, Any]:
-    """Something to press."""
     return {"path": path, "sort": "button", "label": label}
 
 
 def upload(path: str, label: str) -> dict[str, Any]:
-    """A file to give."""
     return {"path": path, "sort": "file", "label": label, "largest": LARGEST_FILE}
 
 
@@ -198,7 +195,6 @@ MARK = "nobody's measurement: the page begins with it, set your own"
 
 
 def controls_of(state: State, loop: Specification) -> Iterator[Control]:
-    """Every parameter of a loop."""
     motion = loop.device.motion
     laws = getattr(loop.environment, "laws", ())
     met = loop.environment.environment if laws else loop.environment  # type: ignore[attr-defined]
@@ -252,7 +248,6 @@ def _environments(state: State) -> dict[str, Any]:
 
 
 def _boxes(state: State) -> list[dict[str, Any]]:
-    """Every law, on or off."""
     on = {str(law["type"]) for law in state.laws}
     return [flag(f"with.{name}", _spoken(name), law.meaning, name in on) for name, law in LAWS.items()]
 

@@ -316,7 +316,6 @@ class RegionPicture:
         )
 
     def clear(self) -> None:
-        """Nothing to draw."""
         self.figure.visible = False
 
 
@@ -358,7 +357,6 @@ class TouchPictures:
         return self.position, self.force, self.energy
 
     def clear(self) -> None:
-        """Nothing to draw."""
         for made in self._all:
             made.visible = False
 

@@ -100,7 +100,6 @@ class _Server:
         self._serving = Serving(sockets, self._made, "zwidth explorer")
 
     def _made(self) -> tuple[Any, Callable[[], None]]:
-        """A server of Bokeh, and what ends it."""
         for name in ("bokeh.server.views.ws", "tornado.access"):
             logging.getLogger(name).setLevel(logging.CRITICAL)  # what a browser does is not worth a line
         access = NullAuth() if self._token is None else TokenAccess(self._token, f"zwidth_{self._port}")
@@ -119,7 +118,6 @@ class _Server:
         return http, server.stop
 
     def _make(self) -> Template:
-        """The page of a new browser."""
         if self._open >= self._most:
             return full_page(self._most)
         document = panel_state.curdoc
@@ -251,7 +249,6 @@ class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
 
     @property
     def login_url(self) -> str:
-        """Where the form is."""
         return _LOGIN
 
     @property
@@ -260,8 +257,6 @@ class TokenAccess(AuthProvider):  # type: ignore[misc]  # Bokeh's has no types
         access = self
 
         class Enter(RequestHandler):
-            """Asks for the token."""
-
             def get(self) -> None:
                 self.set_status(401)
                 self.finish(_FORM.format(message=""))

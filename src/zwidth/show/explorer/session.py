@@ -130,7 +130,6 @@ class Session:
     # what is moved
 
     def hear(self, event: Event) -> Mapping[str, Any]:
-        """Answer one event of the form."""
         kind, path, value = str(event.get("kind")), str(event.get("path")), event.get("value")
         if kind == "press":
             return self._file(path)
@@ -207,7 +206,6 @@ class Session:
         self.compute("verdict", judged_in_full, self._come)
 
     def _come(self, answer: Answer) -> None:
-        """What took longer has come."""
         if answer.value is not None:
             self.verdict = answer.value
         self._say(answer.message)

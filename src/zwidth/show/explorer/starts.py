@@ -26,7 +26,6 @@ from zwidth.model.specification.read import (
     specified_device,
 )
 from zwidth.model.specification.table import Table
-from zwidth.quantity.parameter import Parameter
 from zwidth.quantity.spoken import angles_typed
 from zwidth.show.explorer.state import State, Values, catalogued, completed, usual
 
@@ -162,9 +161,5 @@ def _begun(kind: Kind, shape: Values, motion: str, before: Values) -> dict[str, 
         if key in before and key not in values:
             values[key] = before[key]
         elif own.required and key not in values:
-            values[key] = _usual(own, motion)
+            values[key] = f"{usual(own.unit_for(motion)):g}"
     return values
-
-
-def _usual(own: Parameter, motion: str) -> str:
-    return f"{usual(own.unit_for(motion)):g}"

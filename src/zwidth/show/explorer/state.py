@@ -277,7 +277,6 @@ def from_file(text: str, name: str, shown: State) -> Given:
 
 
 def _rendered(found: Mapping[str, Table], shown: State) -> Given:
-    """An environment and its laws on the device that is shown."""
     device = shown.loop().device
     environment = build_environment(found["environment"], device.motion)
     made = State.of(device, with_laws(environment, found.get("law"), None, device.motion))

@@ -21,8 +21,6 @@ from zwidth.showing import Html, Lines, Table, element, join
 
 
 class Asked(Protocol):
-    """What a picture asks of its page."""
-
     state: State
     verdict: Verdict | None
 
@@ -129,7 +127,6 @@ def _advice(verdict: Verdict) -> Html:
 
 
 def _scope(verdict: Verdict) -> Html:
-    """What the claim covers and takes for granted."""
     return Lines(verdict.small_print(), "What this covers").html
 
 

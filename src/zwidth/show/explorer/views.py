@@ -49,7 +49,6 @@ if TYPE_CHECKING:
 
 
 def views_of(page: Asked) -> list[View]:
-    """All of them, in the order of their tabs."""
     touches = Touches(page)
     return [
         _cheap(page, "criterion", CRITERION, CriterionPicture()),
@@ -187,7 +186,6 @@ class MotionPictures:
         return f"{shown}: {number(energies[-1])} {w_unit} come out of what is shown."
 
     def clear(self) -> None:
-        """Nothing to draw."""
         self.player.motion = {}
         for made in self._all:
             made.visible = False
@@ -199,7 +197,6 @@ NONE = "Switch laws on under “Laws in the chain”; each acts on what the one 
 
 
 def compared_table(rows: Sequence[Row], motion: str) -> Html:
-    """A row for each chain."""
     unit = GLOSSARY["force"].unit_for(motion)
     heads = ("chain", "outcome", "energy the hand got out", "largest force")
     body = (
@@ -259,7 +256,6 @@ export function render({ model }) {
 
 
 def play_view(page: Asked) -> View:
-    """The tab."""
     frame: Any = Frame(sizing_mode="stretch_width")
     caption = words(element("p"))
 
@@ -306,7 +302,6 @@ class Touches:
             self._draw(self._page.state)
 
     def hear(self, event: Event) -> Mapping[str, Any]:
-        """What is moved of the hand."""
         if event.get("kind") == "release":
             self._released()
             return {}
@@ -352,7 +347,6 @@ def _drawn_of(state: State) -> tuple[object, ...]:
 
 
 def _controls_of(hand: ParametricOperator, motion: str) -> list[Control]:
-    """The numbers of a hand on sliders."""
     return [
         number_control(f"operator.{name}", own, getattr(hand, name), motion, in_words(name))
         for name, own in parameters_of(type(hand)).items()

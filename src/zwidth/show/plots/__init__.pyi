@@ -6,6 +6,7 @@ from zwidth.show.plots.linear import criterion as criterion
 from zwidth.show.plots.linear import draw_criterion as draw_criterion
 from zwidth.show.plots.linear import draw_damping as draw_damping
 from zwidth.show.plots.linear import draw_friction as draw_friction
+from zwidth.show.plots.maps import draw_z_width as draw_z_width
 from zwidth.show.plots.maps import save_sweep as save_sweep
 from zwidth.show.plots.maps import save_z_width as save_z_width
 from zwidth.show.plots.maps import sweep_figure as sweep_figure

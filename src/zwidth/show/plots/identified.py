@@ -265,7 +265,6 @@ def _found(identified: IdentifiedNumbers) -> list[str]:
 
 
 def _numbers(axes: Axes, identified: IdentifiedNumbers) -> None:
-    """The numbers on the left, what was found on the right."""
     axes.set_axis_off()
     place: Any = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "top", "color": BLACK}
     for k, row in enumerate(rows(identified, _CONFIDENCE)):
@@ -295,8 +294,6 @@ MOST_DOTS = 4000
 
 
 class Fit(Protocol):
-    """What is drawn of a fit."""
-
     @property
     def time(self) -> Array | None:
         """Of the samples [s]."""
@@ -353,7 +350,6 @@ def fit_title(fit: Fit) -> str:
 
 
 def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
-    """Dots measured, a line fitted."""
     factor, unit = scale(fit.output, quantity_unit(fit.response, fit.motion))
     every = slice(None, None, max(1, time.size // MOST_DOTS))
     axes.plot(time[every], factor * fit.output[every], ".", ms=5, color=GREY, mew=0, label="measured")

@@ -1,7 +1,6 @@
 """The plane of walls: what is passive, what is quiet, what is stable in which hand.
 
-Regions are those of the map; the boundary of each is drawn and named, so that no meaning
-hangs on a colour.
+Regions are those of the map; the boundary of each is drawn and named, so that no meaning hangs on a colour.
 """
 
 from __future__ import annotations
@@ -124,6 +123,12 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     return figure
 
 
+def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
+    """The same on given axes, the whole map and no close-up."""
+    _draw(axes, _told(found))
+    legend(axes)
+
+
 def _draw(axes: Axes, found: xr.Dataset) -> None:
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
@@ -173,7 +178,6 @@ def _sustained(found: xr.Dataset) -> tuple[tuple[str, str, float, str], ...]:
 
 
 def _edges(middles: Array) -> Array:
-    """The edges of equal cells from their middles."""
     half = (middles[1] - middles[0]) / 2 if len(middles) > 1 else 0.5
     return np.append(middles - half, middles[-1] + half)
 
@@ -323,7 +327,6 @@ def _maps(found: xr.Dataset, name: str) -> Figure:
 
 
 def _map(axes: Axes, part: xr.Dataset, name: str) -> Any:
-    """One variable over two parameters, the second along x."""
     along_y, along_x = (str(dim) for dim in part.dims)
     values = part[name].transpose(along_y, along_x).values
     x, y = _scaled(part[along_x]), _scaled(part[along_y])

@@ -82,7 +82,6 @@ def draw_witness(rows: Sequence[Axes], verdict: Verdict) -> None:
 
 
 def draw_motion(rows: Sequence[Axes], found: Moves) -> None:
-    """The same of a motion by itself."""
     if not isinstance(found, Evidence):
         draw_replayed(rows, found)
         return

@@ -1,9 +1,8 @@
 """The dimensionless plane of a spring wall: β = b/(K T) against σ = f_c/(K Δ).
 
-A device is a straight line of slope 1 on logarithmic axes: a stiffer wall lies
-further down and to the left.  Passive at and beyond ½ on both axes (Abbott &
-Okamura 2005); the four regions are those of Diolaiti, Niemeyer, Barbagli &
-Salisbury (2006).
+A device is a straight line of slope 1 on logarithmic axes: a stiffer wall lies further down and to the left.
+Passive at and beyond ½ on both axes (Abbott & Okamura 2005); the four regions are those of Diolaiti,
+Niemeyer, Barbagli & Salisbury (2006).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """The available storage: the most that a hand can take out, against where it is.
 
-It is bounded by 0 below and finite, and no move takes out more than it falls:
-that is the proof.  The line is for a hand that waits; what the law remembers of
-a hand that moved spreads it into the band.
+It is bounded by 0 below and finite, and no move takes out more than it falls: that is the proof.  The line is
+for a hand that waits; what the law remembers of a hand that moved spreads it into the band.
 """
 
 from __future__ import annotations

@@ -216,7 +216,6 @@ def pair_trace_figure(trace: xr.Dataset) -> Figure:
 
 
 def draw_both(axes: Axes, trace: xr.Dataset, name: str, text: str | None = None) -> None:
-    """One variable of both arms."""
     time = timed(trace)[0]
     values = trace[name].values
     quantity = "position" if name == "position" else "force"

@@ -28,8 +28,6 @@ from zwidth.showing import Headline, Lines, Part, Table, printable
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, and what stands below it."""
-
     title: str
     parts: Sequence[Part]
 
@@ -219,7 +217,6 @@ class _Steps(NamedTuple):
 
 
 def _first_steps(found: Any) -> Iterator[Part]:
-    """The motion in a sentence, and its first steps as a table."""
     yield f"{found.describe()}."
     if isinstance(found, Witness):
         yield _steps_table(_of_a_witness(found))

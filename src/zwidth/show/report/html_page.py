@@ -203,7 +203,6 @@ _SAYS: dict[str, Callable[[Any], str]] = {
 
 
 def _how_to_check_again(said: Contents) -> list[Part]:
-    """In words and numbers."""
     steps = [
         f"{NAME} is in this page, behind the link above. It is the verdict with its evidence, every number "
         "digit for digit.",

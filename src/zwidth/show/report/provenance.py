@@ -92,7 +92,6 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
 
 
 def _of_the_transmission(device: Device) -> Iterator[Row]:
-    """The key, what it is, its value."""
     given = device.transmission
     if given is None:
         return

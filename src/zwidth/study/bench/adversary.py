@@ -2,9 +2,8 @@
 
     gain = −∮ f_h dx      per round, once the law has settled to the motion
 
-A fixed set of motions and what is found against the wall alone; up to the speed of a hand, and
-where nothing gains, faster.  A gain is a witness, replayed in the simulator before it is told; no
-gain is no proof.
+A fixed set of motions and what is found against the wall alone; up to the speed of a hand, and where nothing
+gains, faster.  A gain is a witness, replayed in the simulator before it is told; no gain is no proof.
 """
 
 from __future__ import annotations
@@ -219,7 +218,6 @@ def _player(device: Device, law: Environment) -> Play:
 
 
 def _taken(device: Device, environment: Environment, positions: Floats, rounds: int) -> _Played:
-    """The same by the simulator."""
     path = _listed(positions, rounds)
     period = device.motor_side.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)

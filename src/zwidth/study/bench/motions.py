@@ -1,12 +1,11 @@
 """The motions that a hand tries against every law, one round of each.
 
-Those that take energy out of held springs, encoders and filters: across one edge and back,
-fast in and fast out over more and more counts, slow one way and fast the other, with
-rests at either end, and sinusoids inside and through the surface; those that earn credit which
-a law should not give: to and fro over an edge before a leap, up within a count and out of it.
-The same over steps of the converter, and about the depth where the force limit is reached; small
-rounds at random beside edges and steps.  And those that are found against the wall alone, by proof
-and by value iteration.
+Those that take energy out of held springs, encoders and filters: across one edge and back, fast in and fast
+out over more and more counts, slow one way and fast the other, with rests at either end, and sinusoids inside
+and through the surface; those that earn credit which a law should not give: to and fro over an edge before a
+leap, up within a count and out of it.  The same over steps of the converter, and about the depth where the
+force limit is reached; small rounds at random beside edges and steps.  And those that are found against the
+wall alone, by proof and by value iteration.
 
 Every length is one of the loop's own: a count, the depth of a converter step, that of the force
 limit, the way of the fastest hand in a sample.  So the same loop in other units meets the same hand.
@@ -132,7 +131,6 @@ def _stiffnesses(device: Device, environment: Environment) -> tuple[Fraction, ..
 
 
 def _step_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
-    """ΔF/K, where the encoder is not coarser."""
     if device.force_resolution is None:
         return []
     depths = [device.exact("force_resolution") / stiffness for stiffness in stiffnesses]
@@ -140,7 +138,6 @@ def _step_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Frac
 
 
 def _limit_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
-    """F/K."""
     if device.force_limit is None:
         return []
     return [device.exact("force_limit") / stiffness for stiffness in stiffnesses]

@@ -225,7 +225,6 @@ def _without(device: Device, friction: Fraction) -> Device:
 
 
 def _paid(device: Device) -> str:
-    """What is said of the actuator."""
     parts = []
     if device.force_resolution is not None:
         half = _force(half_a_step(device), device)
@@ -277,7 +276,6 @@ def by_value_iteration(device: Device, law: Environment, found: Attack) -> tuple
 
 
 def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
-    """By `available_storage`."""
     actuator = _actuator(device)
     program = program_of(device, law, **actuator)
     assert isinstance(program, DynamicProgram)  # it is no row

@@ -3,10 +3,9 @@
     passive          K ≤ K_max(B), the smaller of  2 (b − g|B|)/((2d + 1) T)  and  2 f_c/Δ − v|B|/T
     admissible speed (f_c − F)/(b_need − b),  F = (K + v|B|/T) Δ/2,  b_need = (2d + 1) K T/2 + g|B|
 
-with g = Σ|w_j| and v = T ‖h_v‖₁ of the velocity estimate: the two conditions for contact made and
-broken, and what is left of them for a hand of bounded speed (docs: contact made and broken).
-K_max is rational, so that a cell is passive by an exact comparison.  With a delay of d + α samples,
-0 < α < 1, it is the root of
+with g = Σ|w_j| and v = T ‖h_v‖₁ of the velocity estimate: the two conditions for contact made and broken, and
+what is left of them for a hand of bounded speed (docs: contact made and broken).  K_max is rational, so that
+a cell is passive by an exact comparison.  With a delay of d + α samples, 0 < α < 1, it is the root of
 
     b (b − Q) = α(1 − α) (K T + 2 g|B|)²/4,    Q = (2d + 1 + 2α) K T/2 + g|B|,    2 b_need = Q + √(Q² + …),
 
@@ -133,7 +132,6 @@ def spring_limit(asked: Request) -> float:
 
 
 def _spring_passes(asked: Request, stiffness: Fraction) -> bool:
-    """Whether a spring is passive, by the exact conditions."""
     device = asked.device
     period, b = device.exact("sample_period"), device.exact("damping")
     late = device.exact("delay") / period

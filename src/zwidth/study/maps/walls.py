@@ -281,7 +281,6 @@ def _levels(name: str, pair: tuple[RealLike, RealLike], unit: str) -> tuple[Exac
 
 
 def _effects(areas: Any) -> tuple[list[str], Any]:
-    """The name and the effect of each of the fifteen terms."""
     sign = np.array([-1.0, 1.0])
     names, effects = [], []
     for size in range(1, 5):

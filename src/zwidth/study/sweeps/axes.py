@@ -84,7 +84,6 @@ def _values(name: str, given: object, unit: str) -> tuple[float, ...]:
 
 
 def _plain(value: Any) -> Any:
-    """A number of numpy as Python has it."""
     return value.item() if isinstance(value, np.generic) else value
 
 
@@ -127,7 +126,6 @@ def _mantissa(part: str) -> str:
 
 
 def _unit_of(part: str) -> str:
-    """What stands behind the number."""
     text = part.strip()
     end = next((i for i in range(len(text), 0, -1) if _is_number(text[:i])), 0)
     return text[end:].strip()

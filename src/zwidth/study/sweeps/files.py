@@ -199,7 +199,6 @@ def attributes(asked: Request, layers: Layers) -> dict[str, str]:
 
 
 def _in_words(asked: Request) -> str:
-    """The loop before its numbers are varied, on one line."""
     loop = asked.loop
     if not isinstance(loop.subject, Device):
         return loop.subject.describe()
@@ -224,7 +223,6 @@ def _ranges(asked: Request) -> Environment:
 
 
 def _why(asked: Request, place: tuple[int, ...]) -> str:
-    """Why a loop cannot be."""
     values = ", ".join(own.told(own.values[n]) for own, n in zip(asked.axes, place, strict=True))
     try:
         asked.question.answer(asked.at(place), {})

@@ -331,7 +331,6 @@ def _name(key: str) -> str:
 
 
 def _field(thing: Any, name: str) -> str:
-    """The field that holds a number."""
     if name == "cutoff" and isinstance(thing, OnePole):
         return "time_constant"
     return "damping" if name == "virtual_damping" and isinstance(thing, Environment) else name

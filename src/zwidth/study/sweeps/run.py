@@ -136,7 +136,6 @@ def _kept(
 
 
 def _told(asked: Request, found: xr.Dataset) -> dict[str, Any]:
-    """What a store says of itself once it is whole."""
     columns = {
         name: {"meaning": own.meaning, "unit": own.unit, "words": list(own.words), "several": own.several}
         for name, own in asked.columns.items()
@@ -145,7 +144,6 @@ def _told(asked: Request, found: xr.Dataset) -> dict[str, Any]:
 
 
 def _place(path: Path) -> Path:
-    """Where a sweep is kept."""
     if path.suffix not in SUFFIXES:
         raise InputError(f"a sweep is kept in a file that ends in {' or '.join(SUFFIXES)}, got {str(path)!r}")
     if not path.parent.is_dir():

@@ -296,7 +296,6 @@ def _is_usual(law: DampedWall, loop: LinearLoop) -> bool:
 
 
 def _covers(decision: Decision) -> bool:
-    """Whether the conditions above hold."""
     law = decision.wall
     assert isinstance(law, DampedWall)
     need = law.required_damping(decision.loop)

@@ -126,7 +126,6 @@ def _of_arm(
 
 
 def _arm(table: Table, arm: str, clock: str, told: Told) -> Recording:
-    """What the file holds of one arm."""
     original, chosen = _of_arm(table, arm, told.columns)
 
     def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
@@ -151,13 +150,11 @@ _NO_COLUMN = re.compile(r'(?<=columns=\{")(?=\w+": […"])')
 
 
 def _own(given: Mapping[str, Any], arm: str) -> dict[str, Any]:
-    """What was said of this arm, and of both."""
     both = {key: v for key, v in given.items() if not key.startswith(tuple(f"{each}_" for each in ARMS))}
     return both | {key.removeprefix(f"{arm}_"): v for key, v in given.items() if key.startswith(f"{arm}_")}
 
 
 def _of_dataset(data: xr.Dataset) -> Table:
-    """A trace of two arms as one table."""
     columns = {"time": np.asarray(data["time"].values)}
     units: dict[str, str | None] = {"time": "s"}
     for name in ("measured_position", "commanded_force", "actuator_force"):

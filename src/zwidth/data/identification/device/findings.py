@@ -176,8 +176,6 @@ def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[
 
 
 def _turned(log: Log, channels: tuple[str, ...]) -> Log:
-    """The same log with the sign of some forces turned round."""
-
     def blocks() -> Iterator[Block]:
         for block in log.blocks():
             forces = {name: getattr(block, name) for name in channels}

@@ -128,11 +128,10 @@ class IdentifiedNumbers:
         """A device with less friction than the data show, f_c + b |v| at every speed that they show.
 
         The lower end of b is that of the direction with less damping, and no more than the lower end of the
-        slope at the largest speed seen: friction may rise less, the quicker the motion.  That of f_c is
-        what the friction curve of the data leaves above b |v|.  Both hold together with the stated
-        confidence, for motions up to `speed`, which the device carries as its `friction_speed`.  Where
-        friction is surely bent, the two are those of the line below the curve that proves the stiffest
-        wall.
+        slope at the largest speed seen: friction may rise less, the quicker the motion.  That of f_c is what
+        the friction curve of the data leaves above b |v|.  Both hold together with the stated confidence, for
+        motions up to `speed`, which the device carries as its `friction_speed`.  Where friction is surely
+        bent, the two are those of the line below the curve that proves the stiffest wall.
 
         Parameters
         ----------

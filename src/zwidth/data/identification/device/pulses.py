@@ -273,10 +273,9 @@ def find_strokes(counts: Array) -> Strokes:
 def positions(counts: Array, strokes: Strokes) -> Array:
     """The position inside the strokes [counts]; elsewhere the middle of the count.
 
-    Where every sample brings a tick, the middle of the count is all that is known.  Where
-    ticks come seldom, each says more: at half a sample before it the device was at the edge.
-    Between such edges the position is taken as a cubic with the slopes of the parabolas through
-    three of them.
+    Where every sample brings a tick, the middle of the count is all that is known.  Where ticks come seldom,
+    each says more: at half a sample before it the device was at the edge.  Between such edges the position is
+    taken as a cubic with the slopes of the parabolas through three of them.
     """
     edges = (counts[strokes.ticks - 1] + counts[strokes.ticks] + 1) / 2
     found = counts + 0.5

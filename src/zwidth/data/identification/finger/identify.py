@@ -126,8 +126,6 @@ def identify_finger(
 
 
 class _Task(NamedTuple):
-    """What was asked for, and by which force it is answered."""
-
     log: Log
     device: Device | None
     piece: float
@@ -200,7 +198,6 @@ def _begun(task: _Task) -> _Road:
 
 
 def _finished(task: _Task, road: _Road) -> _Road:
-    """The fits with the instrument that was asked for."""
     if task.instrument != "perturbation":
         return road
     shape = road.ways.shape
@@ -217,7 +214,6 @@ def _total(task: _Task, pieces: Pieces, shape: Weights) -> Ways | None:
 
 
 def _turned(task: _Task, other: Log) -> dict[str, Estimate] | None:
-    """The stiffnesses that a log with other signs shows."""
     turned = task._replace(log=other)
     return _stiffnesses(turned, _begun(turned))
 

@@ -413,7 +413,6 @@ class Inverse(CompiledConnection):
 
 
 def _inventory(message: bytes, address: str) -> list[dict[str, Any]]:
-    """The devices in the first message of the service."""
     try:
         devices = json.loads(message).get("inverse3", [])
         if all(isinstance(device, dict) for device in devices):

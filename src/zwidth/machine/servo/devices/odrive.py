@@ -239,7 +239,6 @@ class ODrive(CompiledConnection):
         self._limits = f", at most {limits}; it lets the motor go {dropped}, whatever it holds"
 
     def _known(self, *names: str) -> str:
-        """The first of these properties that its firmware has."""
         for name in names[:-1]:
             with suppress(InputError):
                 self._read(name)

@@ -149,7 +149,6 @@ def _append(outbox: Bytes, start: int, end: int, at: int) -> int:
 
 @compiled
 def _put_torque(memory: Array, outbox: Bytes) -> int:
-    """The line that gives the torque, with its checksum."""
     at = _append(outbox, TORQUE, int(memory[TORQUE_END]), 0)
     at = write_decimal(memory[FORCE], _DECIMALS, outbox, at)
     total = 0

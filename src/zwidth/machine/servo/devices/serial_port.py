@@ -159,7 +159,6 @@ class BusServo(CompiledConnection):
         """What the state of the servo says, in words."""
 
     def _change(self, address: int, count: int, value: int) -> None:
-        """Set a register for as long as the servo is served."""
         self._before.append((address, count, self._read(address, count)))
         self._set(address, count, value)
 

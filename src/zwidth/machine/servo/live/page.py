@@ -103,7 +103,6 @@ def guarded(application: Any, names: Collection[str], port: int, *, addresses: b
 
 
 def _is_address(host: str, port: int) -> bool:
-    """True of an address in numbers with this port."""
     name = host.removesuffix(f":{port}").removeprefix("[").removesuffix("]")
     try:
         return host in origins([str(ip_address(name))], port)

@@ -135,7 +135,6 @@ class Recorder:
             self._file.abandon()
 
     def _drain(self) -> None:
-        """What the loop has written since the last time."""
         told = self._rows.events[self._told :]
         count, found = self._rows.after(self._count)
         now = time.time_ns()
@@ -379,7 +378,6 @@ def _messages(rows: Array, taken: NDArray[np.int64], head: Head, before: int) ->
 
 
 def _event(event: dict[str, Any], now: int, number: int) -> bytes:
-    """A message whose one string is the event as JSON."""
     raw = as_json(event).encode() + b"\0"
     about = layout.MESSAGE_HEAD.pack(_OF_EVENTS, number % 2**32, now, now)
     return record(layout.MESSAGE, about + layout.CDR + pack("<I", len(raw)) + raw)

@@ -170,8 +170,7 @@ def _softened(plant: Plant, motion: PeriodicMotion, low: float) -> PeriodicMotio
             low = slope
     runs = simulated(plant, best.slope, gap)
     moving = sum(bool(np.ptp(run) > _SMALLEST * abs(gap)) for run in runs)
-    best = best._replace(basin=moving / len(runs))
-    return best
+    return best._replace(basin=moving / len(runs))
 
 
 # Periodic motions of a piecewise linear loop: guessed by simulation, corrected, and then certain.

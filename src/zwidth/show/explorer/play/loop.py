@@ -184,7 +184,6 @@ def played_pair(
 
 
 def _thing(device: Device) -> str:
-    """What a hand holds of it."""
     return {"finger": "handle", "hands-on": "wheel", "fingers-on": "knob"}[usual_kind(device)]
 
 

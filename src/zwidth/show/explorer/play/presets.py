@@ -26,12 +26,10 @@ LIGHT = LinearHand(mass=0.006, stiffness=200.0, damping=0.2)
 
 
 def presets() -> list[Played]:
-    """Every loop of the page, in its order."""
     return [_passive(), _buzz(), _bounce(), _wobble(), _tissue(), _detents(), *_hard_wall(), *_arms()]
 
 
 def _paddle(**changes: Any) -> Device:
-    """The haptic paddle of the catalogue, in round numbers."""
     paddle = Device(
         mass="36 g",
         damping="0.15 N*s/m",
