@@ -119,7 +119,11 @@ def test_a_scale_says_while_which_contact_it_is_proved(run):
     write()
     told = run(f"tissue a.csv phantom --delay '1 ms' {ONE} --scaled -o s.toml", None).out.replace("\n", " ")
     assert "while contact is kept" in told
-    assert "proved passive while contact is kept" in Path("s.toml").read_text(encoding="utf-8")
+    assert "not given, taken as 0" in " ".join(told.split())
+    remark = Path("s.toml").read_text(encoding="utf-8")
+    assert (
+        "proved passive while contact is kept on phantom, Coulomb friction, resolution taken as 0" in remark
+    )
     assert "PASSIVE IN CONTACT" in run("check phantom s.toml --delay '1 ms'", 4).out
 
 

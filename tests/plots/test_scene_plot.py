@@ -24,7 +24,7 @@ def test_every_node_and_every_number_is_there() -> None:
     figure = SCENE.plot()
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]
     shown = "\n".join(texts)
-    for number in ("50 g", "812 N/m", "0.57 N·s/m", "0.23 kg", "3100 N/m", "gap 4 mm", "0.31 N", "4.2"):
+    for number in ("0.05 kg", "812 N/m", "0.57 N·s/m", "0.23 kg", "3100 N/m", "gap 4 mm", "0.31 N", "4.2"):
         assert sum(number in text for text in texts) == 1
     for node in ("handle", "block", "cage"):
         assert node in shown

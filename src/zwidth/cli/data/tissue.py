@@ -171,15 +171,19 @@ def _wall(test: TissueTest, device: Device, rule: Any) -> OnDevice:
 def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
     """The environment with its intervals above it, as comments."""
     from zwidth.model.specification.write import written_environment
+    from zwidth.quantity.text import in_words
     from zwidth.writing import writing_whole
 
     law, remark = found.test.environment(found.rule), ""
     if scaled:
-        bracket = found.wall and (found.wall.kept or found.wall.bracket)
-        if not bracket or bracket.proved_passive is None:
+        bracket = None if found.wall is None else found.wall.kept or found.wall.bracket
+        if found.wall is None or bracket is None or bracket.proved_passive is None:
             raise InputError("--scaled: no scale of this tissue is proved passive on the device")
         law = found.test.scaled(bracket.proved_passive, found.rule)
-        remark = f"# Every force times {bracket.proved_passive:.6g}: proved passive{of_which(bracket)}.\n"
+        device = found.wall.device
+        taken = ", ".join(map(in_words, device.assumed))
+        proved = f"proved passive{of_which(bracket)} on {device.name}{taken and f', {taken} taken as 0'}"
+        remark = f"# Every force times {bracket.proved_passive:.6g}: {proved}.\n"
     numbers = [f"#   {name}: {low_high} {unit}" for name, _, low_high, unit in found.test.parameters()[1:]]
     head = [f"# Tissue of a {found.test.test.kind} test, by zwidth tissue; 95 % intervals:", *numbers]
     with writing_whole(path) as file:

@@ -9,11 +9,12 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.data.results import FittedTissue, OnDevice, of_which
-from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section
+from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section, small_print
 from zwidth.data.logs import Finding
 from zwidth.data.tissue import TissueTest
 from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.scope import TOLD
+from zwidth.passivity.wording import in_short
 from zwidth.quantity.text import shown
 
 _FEW = 4
@@ -123,6 +124,7 @@ def _wall(wall: OnDevice | None) -> Iterator[Row]:
         yield "intervals", "not checked: see what to doubt, or the model takes none"
     else:
         yield "intervals", f"of all that the 95 % intervals allow together: {wall.box.outcome}"
+    yield "assumes", small_print(in_short(wall.verdict.scope, outcome))
 
 
 def _scale(bracket: Bracket, kept: Bracket | None) -> str:
