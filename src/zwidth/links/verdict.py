@@ -107,11 +107,6 @@ class PortVerdict(PassivityAnswer):
             assumed=self.port.device.assumed,
         )
 
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim covers and takes for granted."""
-        return tuple(self._assumptions())
-
     def _assumptions(self) -> Iterator[str]:
         device = self.port.device
         yield "two hands without limit on speed and force, one on each device; both start at rest"

@@ -110,6 +110,9 @@ class Answer(Result):
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What the claim covers and takes for granted, line by line."""
+        return tuple(self._assumptions())
+
+    def _assumptions(self) -> Iterable[str]:
         return lines(self.scope, self.outcome)
 
     @property

@@ -187,11 +187,6 @@ class PairVerdict(PassivityAnswer):
             contact="both sides", encoder="counted" if steps else "ideal", motion=self.pair.leader.motion
         )
 
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim covers and takes for granted."""
-        return tuple(self._assumptions())
-
     def _assumptions(self) -> Iterator[str]:
         pair = self.pair
         yield "two hands without limit on speed and force, one on each arm; the masses play no part"

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import inf
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
@@ -30,7 +30,8 @@ from zwidth.passivity.ports.largest import Largest, NoLevel
 from zwidth.passivity.ports.motion import absorbed
 from zwidth.passivity.ports.port import Port, typed_at_most
 from zwidth.passivity.ports.positive_real import Band, bands, prove_level
-from zwidth.passivity.scope import Outcome
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Outcome, Scope
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 
@@ -191,3 +192,40 @@ def evidenced(index: PassivityIndex) -> Outcome:
         return "passive" if index.certificate(0).verify() else "undecided"
     witness = index.refute(0)
     return "active" if witness is not None and witness.verify() else "undecided"
+
+
+class PortAnswer(PassivityAnswer):
+    """Whether a linear port, or of a network the port u → y that its waves make, is passive by itself."""
+
+    if TYPE_CHECKING:
+        input: PassivityIndex
+
+    @cached_property
+    def outcome(self) -> Outcome:
+        """ "passive": ν ≥ 0 with a proof; "active": ν < 0 with a motion; the checker has accepted either."""
+        return evidenced(self.input)
+
+    @property
+    def scope(self) -> Scope:
+        """A linear port by itself: every hand, no surface, no encoder, nothing sampled but what G(z) is."""
+        return Scope(contact="both sides", transmission="")
+
+    @property
+    def hidden_modes_decay(self) -> bool:
+        """False when a mode that cancels between poles and zeros does not decay: nothing here sees it."""
+        return self.input.port.hidden_modes_decay
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof that the port is passive, or S bounded real; None if it is not."""
+        return self.input.certificate(0) if self.passive else None
+
+    @cached_property
+    def witness(self) -> ExtractingInput | None:
+        """A motion from rest, u and y, that takes energy out; None if it is passive, or none was found."""
+        return self.input.refute(0)
+
+    @cached_property
+    def bands(self) -> tuple[Band, ...]:
+        """Where a sinusoid takes energy out, ‖S(jω)‖ > 1, in ascending frequency; () where none does."""
+        return self.input.bands()

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 from flint import fmpq_poly
@@ -25,18 +24,15 @@ from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.system import is_system, time_of
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity import parameter_limits
-from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.linear.criterion import frequency, tightest
-from zwidth.passivity.ports.evidence import ExtractingInput
-from zwidth.passivity.ports.index import PassivityIndex, evidenced
+from zwidth.passivity.ports.index import PassivityIndex, PortAnswer
 from zwidth.passivity.ports.largest import Largest, largest_level
 from zwidth.passivity.ports.port import Port, in_lowest_terms, typed_at_most
-from zwidth.passivity.ports.positive_real import Band, in_words
+from zwidth.passivity.ports.positive_real import in_words
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
 from zwidth.passivity.ports.scattering import RelativeIndex, relative_index
-from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Outcome, Scope, unit_key
+from zwidth.passivity.scope import Scope, unit_key
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import RealLike
@@ -44,7 +40,7 @@ from zwidth.quantity.text import told_quantity
 
 
 @dataclass(frozen=True, repr=False)
-class PassivityIndices(PassivityAnswer):
+class PassivityIndices(PortAnswer):
     """What `passivity_indices` found."""
 
     _FORMAT = "zwidth indices 1"
@@ -60,11 +56,6 @@ class PassivityIndices(PassivityAnswer):
         "what H(z) needs of a device; None where no sample period is known"
     )
     assumed: tuple[str, ...] = known("what is assumed of the sample period; () where it is said", default=())
-
-    @cached_property
-    def outcome(self) -> Outcome:
-        """ "passive": ν ≥ 0 with a proof; "active": ν < 0 with a motion; the checker has accepted either."""
-        return evidenced(self.input)
 
     @property
     def claim(self) -> str:
@@ -85,26 +76,6 @@ class PassivityIndices(PassivityAnswer):
         """ν, in the unit of output over input."""
         return self.input.value
 
-    @property
-    def hidden_modes_decay(self) -> bool:
-        """False when a mode that cancels between poles and zeros does not decay: no index sees it."""
-        return self.input.port.hidden_modes_decay
-
-    @property
-    def certificate(self) -> Certificate | None:
-        """The proof that the port is passive; None if it is not."""
-        return self.input.certificate(0) if self.passive else None
-
-    @cached_property
-    def witness(self) -> ExtractingInput | None:
-        """A motion from rest that takes energy out; None if the port is passive, or none was found."""
-        return self.input.refute(0)
-
-    @cached_property
-    def bands(self) -> tuple[Band, ...]:
-        """Frequencies at which a sinusoid takes energy out, in ascending order; () where none does."""
-        return self.input.bands()
-
     def relative(self, reference: RealLike = 1) -> RelativeIndex:
         """How much of a wave comes back at most, R; the port is passive if and only if R ≤ 1.
 
@@ -114,11 +85,6 @@ class PassivityIndices(PassivityAnswer):
             z > 0, in the unit of output over input: against which u and y are waves.
         """
         return relative_index(self.input.port, reference)
-
-    @property
-    def scope(self) -> Scope:
-        """A linear port by itself: every hand, no surface, no encoder, nothing sampled but what G(z) is."""
-        return Scope(contact="both sides", transmission="")
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -22,21 +22,19 @@ from flint import fmpq_poly
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.ports.evidence import ExtractingInput, index_document, proof_document
-from zwidth.passivity.ports.index import PassivityIndex, evidenced
+from zwidth.passivity.ports.evidence import index_document, proof_document
+from zwidth.passivity.ports.index import PassivityIndex, PortAnswer
 from zwidth.passivity.ports.largest import largest_level
 from zwidth.passivity.ports.port import Polynomials, Port, as_polynomials, leverrier, typed_at_most
 from zwidth.passivity.ports.positive_real import OFFSET, Band, bands, in_words, is_stable, prove_level
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
-from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Outcome, Scope
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 
 
 @dataclass(frozen=True, repr=False)
-class ScatteringPassivity(PassivityAnswer):
+class ScatteringPassivity(PortAnswer):
     """What `scattering_passivity` found."""
 
     _FORMAT = "zwidth scattering 1"
@@ -44,11 +42,6 @@ class ScatteringPassivity(PassivityAnswer):
     signs: tuple[int, ...] = answered("Σ: which sign each b has in u = a − Σb and y = a + Σb")
     input: PassivityIndex = known("the input index of u → y; ≥ 0 where S is bounded real")
     assumed: tuple[str, ...] = known("what is assumed of the sample period; () where it is said", default=())
-
-    @cached_property
-    def outcome(self) -> Outcome:
-        """ "passive" with a proof, "active" with waves; the checker has accepted either."""
-        return evidenced(self.input)
 
     @property
     def claim(self) -> str:
@@ -75,26 +68,6 @@ class ScatteringPassivity(PassivityAnswer):
         """1 − ‖S‖∞."""
         return 1 - self.gain.value
 
-    @cached_property
-    def bands(self) -> tuple[Band, ...]:
-        """Where ‖S(jω)‖ > 1, in ascending frequency."""
-        return self.input.bands()
-
-    @property
-    def hidden_modes_decay(self) -> bool:
-        """False when a mode that cancels between poles and zeros does not decay: no wave shows it."""
-        return self.input.port.hidden_modes_decay
-
-    @property
-    def certificate(self) -> Certificate | None:
-        """The proof that S is bounded real: of u → y; None if it is not."""
-        return self.input.certificate(0) if self.passive else None
-
-    @cached_property
-    def witness(self) -> ExtractingInput | None:
-        """Signals u and y by which more comes back; None if S is bounded real, or none were found."""
-        return self.input.refute(0)
-
     def waves(self, points: int = 1000) -> tuple[list[float], list[list[float]], list[list[float]]] | None:
         """(t [s], a, b) of the witness, a signal for each port; None where there is no witness."""
         if self.witness is None:
@@ -108,11 +81,6 @@ class ScatteringPassivity(PassivityAnswer):
             for sign, axis in zip(self.signs, zip(u, y, strict=True), strict=True)
         ]
         return t, a, b
-
-    @property
-    def scope(self) -> Scope:
-        """A linear network by itself."""
-        return Scope(contact="both sides", transmission="")
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -169,11 +169,6 @@ class HeldVerdict(PassivityAnswer):
             motion=self.pair.motion,
         )
 
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim covers and takes for granted."""
-        return tuple(self._assumptions())
-
     def _assumptions(self) -> Iterator[str]:
         free, held = self.question.free, self.question.held
         yield f"a hand on the {free} without limit on speed and force; its mass plays no part"
