@@ -36,8 +36,7 @@ def imported(module: str, what: str, extra: str, otherwise: str = "") -> Any:
 
 
 def library(module: str, cannot: str) -> Any:
-    """A library that reads the logs of others; `cannot` begins the message where it is not installed, such as
-    "a.parquet is not read: Parquet"."""
+    """What reads the logs of others; `cannot` begins the message, as "a.parquet is not read: Parquet"."""
     return imported(module, f"{cannot} takes {module.partition('.')[0]}, which", "logs")
 
 

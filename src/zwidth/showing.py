@@ -100,11 +100,8 @@ class Table:
 def _named(cells: Sequence[str]) -> Html:
     """A row whose first cell says what it is."""
     name, *rest = cells
-    return element("tr", element("th", name, scope="row", style=_LEFT), *(_left(cell) for cell in rest))
-
-
-def _left(cell: str) -> Html:
-    return element("td", cell, style=_LEFT)
+    others = (element("td", cell, style=_LEFT) for cell in rest)
+    return element("tr", element("th", name, scope="row", style=_LEFT), *others)
 
 
 _LEFT = "text-align:left"
