@@ -19,7 +19,7 @@ FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}"
 LINES = {
     "beside the rooms": 1110,
     "checker": 10393,
-    "cli": 10602,
+    "cli": 10605,
     "data": 22775,
     "links": 2344,
     "loop": 7003,
@@ -33,7 +33,7 @@ LINES = {
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 136129
+IN_ALL = 136132
 PHYSICS = 65245
 """Lines of quantity, model, loop, passivity and checker."""
 

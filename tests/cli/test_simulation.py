@@ -1,5 +1,6 @@
 """`zwidth simulate` and `zwidth traces`: files, tables, options, and one clear line on bad input."""
 
+import math
 import os
 import subprocess
 import sys
@@ -200,6 +201,17 @@ def test_what_is_left_alone_and_shakes(run):
     assert "2 s of it" in said
     soft = run(f"simulate {wheel} {spring.format(4)} --operator hands-off --initial-velocity '90 deg/s'")
     assert soft.out.split()[0] == "TOUCH"
+
+
+def test_a_steady_buzz_between_detents_shakes_too(run):
+    """It neither grows nor ends: from turn to turn the encoder's steps change the swing a little."""
+    knob = "--inertia 2e-5 --damping 2e-4 --coulomb-friction 0.002 --counts-per-turn 16384 --rate 2000"
+    row = zw.NonlinearSpring.detents(24, math.radians(15), 0.03)
+    points = (
+        f"--positions='{', '.join(map(str, row.positions))}' --forces='{', '.join(map(str, row.forces))}'"
+    )
+    left = f"{knob} --type nonlinear-spring {points} --operator hands-off --initial-velocity '720 deg/s'"
+    assert run(f"simulate {left} --duration 8").out.split()[0] == "SHAKES"
 
 
 def test_hands_are_named_with_a_word_and_one_to_begin_with(refused):

@@ -88,6 +88,9 @@ def trace_headline(trace: AnyTrace) -> Padding:
     return headline("touch", "blue", f"{words} That proves nothing of other hands: see zwidth check.")
 
 
+_AS_MUCH = 0.98
+"""Of the swing at first that is as much: encoder steps change it from turn to turn."""
+
 _TURNS = 4
 """Stops and turns of what comes back and forth, and is not thrown off once."""
 
@@ -98,7 +101,7 @@ def _shaking(trace: AnyTrace) -> str | None:
     if trace["hand_force"].values.any() or trace.attrs["stops"] < _TURNS:
         return None
     first, last = (float(np.ptp(part)) for part in (x[: x.size // 4], x[-(x.size // 4) :]))
-    if not 0 < first <= last:
+    if not 0 < _AS_MUCH * first <= last:
         return None
     unit = UNITS[str(trace.attrs["motion"])][0]
     return (
