@@ -207,10 +207,9 @@ def test_a_steady_buzz_between_detents_shakes_too(run):
     """It neither grows nor ends: from turn to turn the encoder's steps change the swing a little."""
     knob = "--inertia 2e-5 --damping 2e-4 --coulomb-friction 0.002 --counts-per-turn 16384 --rate 2000"
     row = zw.NonlinearSpring.detents(24, math.radians(15), 0.03)
-    points = (
-        f"--positions='{', '.join(map(str, row.positions))}' --forces='{', '.join(map(str, row.forces))}'"
-    )
-    left = f"{knob} --type nonlinear-spring {points} --operator hands-off --initial-velocity '720 deg/s'"
+    where, forces = (", ".join(map(str, numbers)) for numbers in (row.positions, row.forces))
+    left = f"{knob} --delay '1 ms' --type nonlinear-spring --positions='{where}' --forces='{forces}'"
+    left += " --operator hands-off --initial-velocity '720 deg/s'"
     assert run(f"simulate {left} --duration 8").out.split()[0] == "SHAKES"
 
 

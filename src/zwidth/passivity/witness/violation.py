@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
 from itertools import chain, pairwise
-from math import ceil, floor
+from math import ceil, floor, isfinite
 from typing import Any
 
 from zwidth.passivity.linear.criterion import LinearRefutation, frequency, offset_of
@@ -145,17 +145,21 @@ def within_force(setting: Setting, limit: Fraction) -> Witness | None:
     """
     late = setting.loop.whole_delay + (setting.loop.part_delay > 0)
     shapes = ((ways, still) for ways in _WAYS for still in sorted({1, late, late + 1, 2 * late + 1}))
-    tried = (setting.witness(_pressed(setting, limit, *shape)) for shape in shapes)
+    motions = (_pressed(setting, limit, *shape) for shape in shapes)
+    tried = (setting.witness(one) for one in motions if one is not None)
     found = [witness for witness in tried if witness is not None and witness.peak_force <= limit]
     return max(found, key=lambda witness: witness.exact_energy, default=None)
 
 
-def _pressed(setting: Setting, limit: Fraction, ways: int, still: int) -> Motion:
-    """In and out in so many equal moves, and so many samples still between, on whole counts."""
+def _pressed(setting: Setting, limit: Fraction, ways: int, still: int) -> Motion | None:
+    """In and out in so many equal moves, and so many samples still between, on whole counts; None where the
+    law's force goes beyond every number."""
     way = [Fraction(k, ways) for k in range(ways + 1)]
     shape = (*way, *[way[-1]] * still, *way[-2::-1])
-    peak, count = Fraction(setting.peak_force(shape)), setting.resolution
-    depth = limit * Fraction(999, 1000) / peak if peak else _AMPLITUDE
+    force, count = setting.peak_force(shape), setting.resolution
+    if not isfinite(force):
+        return None
+    depth = limit * Fraction(999, 1000) / Fraction(force) if force else _AMPLITUDE
     unit = count or round_up(depth) / 10**6
     inside = [unit * floor(depth * v / unit) + count / 8 for v in shape[1:-1]]
     x = (Fraction(0), *inside, Fraction(0))
