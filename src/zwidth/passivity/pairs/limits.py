@@ -317,7 +317,7 @@ def _delay_that_turns(pair: Pair) -> float | None:
     age = pair.felt_stiffness * pair.sample_period  # that both readings are a sample older adds this
     if min(first, second) < 0:
         return None
-    more = floor((float(first * second) ** 0.5 - float(crossed)) / float(age))
+    more = floor((float(as_fraction(first * second)) ** 0.5 - float(as_fraction(crossed))) / float(age))
     return float(max(criterion.arms[0].age + more, 0) * pair.sample_period)
 
 
