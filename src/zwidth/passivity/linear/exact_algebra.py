@@ -8,7 +8,7 @@ from functools import lru_cache
 from math import lcm
 from typing import TypeVar
 
-from flint import arb, arb_poly, fmpq, fmpq_poly, fmpz, fmpz_poly
+from flint import arb, arb_poly, fmpq, fmpq_mat, fmpq_poly, fmpz, fmpz_poly
 
 from zwidth.quantity.balls import as_fmpq, ball, middle, precision
 
@@ -217,6 +217,12 @@ def from_whole_cosines(a: Sequence[fmpz | int]) -> fmpz_poly:
         low[m - k] -= weight
     upper = from_whole_cosines([a[m], *[2 * weight for weight in high]])
     return from_whole_cosines(low) + fmpz_poly.chebyshev_t(m) * upper
+
+
+def as_real(real: fmpq_mat, imaginary: fmpq_mat) -> list[list[fmpq]]:
+    """The symmetric matrix (Re −Im; Im Re), of twice the size, with the values of a Hermitian one."""
+    rows = list(zip(real.tolist(), imaginary.tolist(), strict=True))
+    return [[*r, *(-x for x in i)] for r, i in rows] + [[*i, *r] for r, i in rows]
 
 
 def negative_direction(matrix: Sequence[Sequence[fmpq]]) -> list[fmpq] | None:

@@ -13,10 +13,10 @@ import numpy as np
 from flint import fmpq, fmpq_mat, fmpz_poly
 
 from zwidth.passivity.certificate import FORMAT, positivity_document
-from zwidth.passivity.linear.exact_algebra import negative_direction
+from zwidth.passivity.linear.exact_algebra import as_real, negative_direction
 from zwidth.passivity.ports.circle import places_of
 from zwidth.passivity.ports.motion import (
-    Gaussian,
+    Axes,
     Motion,
     absorbed,
     absorbed_at,
@@ -70,8 +70,8 @@ class ExtractingInput(Evidence):
         if self.kind != "burst":
             return []
         side = self.port.inputs if self._is_of_input() else self.port.outputs
-        found = answer(side, place(self.port, self._middle()), self.motion.latent)
-        u = [complex(to_float(a.real), to_float(a.imaginary)) for a in found]
+        found = answer(side, place(self.port, self._middle()), self.motion.axes)
+        u = [complex(*map(to_float, a)) for a in found]
         largest = max(u, key=abs)
         return [(abs(a / largest), phase(a / largest)) for a in u]
 
@@ -129,7 +129,6 @@ _TERMS = 24
 _LENGTHS = (2, 4, 8, 16, 32, 48)
 _LARGEST_ORDER = 24
 
-Axes = tuple[tuple[Fraction, ...], ...]
 Kind = Literal["polynomial", "sequence"]
 
 _ALONE: Axes = ((Fraction(1), Fraction(0)),)
@@ -192,8 +191,7 @@ def _directions(port: Port, level: Fraction, tangent: Fraction) -> Iterator[Axes
     """(α_i, β_i) with aᴴ Π_σ a < 0 at this place: the eigenvector in few digits, or one by elimination."""
     at = place(port, tangent)
     for axes in [_ALONE] if port.axes == 1 else _candidates(form_at(port, level, at)):
-        latent = [Gaussian(as_fmpq(alpha), -as_fmpq(beta)) for alpha, beta in axes]
-        if absorbed_at(port, level, at, latent) < 0:
+        if absorbed_at(port, level, at, axes) < 0:
             yield axes
             return
 
@@ -207,17 +205,11 @@ def _candidates(form: tuple[fmpq_mat, fmpq_mat]) -> Iterator[Axes]:
     vector = vector / vector[np.argmax(np.abs(vector))]
     for digits in (4, 9, 15):
         yield tuple((_decimal(a.real, digits), _decimal(-a.imag, digits)) for a in vector)
-    exact = negative_direction(_embedded(form))
+    exact = negative_direction(as_real(*form))
     if exact is not None:
         size = form[0].nrows()
         values = [as_fraction(x) for x in exact]
         yield tuple((values[i], -values[size + i]) for i in range(size))
-
-
-def _embedded(form: tuple[fmpq_mat, fmpq_mat]) -> list[list[fmpq]]:
-    """The real symmetric matrix (Re −Im; Im Re) of twice the size with the same values."""
-    rows = list(zip(*(part.tolist() for part in form), strict=True))
-    return [[*r, *(-x for x in i)] for r, i in rows] + [[*i, *r] for r, i in rows]
 
 
 def _polynomial(port: Port, level: Fraction) -> Motion | None:

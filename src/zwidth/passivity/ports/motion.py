@@ -24,15 +24,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import comb, cos, pi, sin
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from flint import fmpq, fmpq_mat, fmpq_poly, fmpz
 
+from zwidth.passivity.linear.exact_algebra import as_real
 from zwidth.passivity.ports.port import Polynomials, Port
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Played = list[list[float]]
 Signals = list[fmpq_poly]
+Axes = tuple[tuple[Fraction, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -44,12 +46,7 @@ class Motion:
 
     kind: Literal["burst", "polynomial", "sequence"]
     numbers: tuple[Fraction, ...]
-    axes: tuple[tuple[Fraction, ...], ...]
-
-    @property
-    def latent(self) -> list[Gaussian]:
-        """a_i = α_i − jβ_i of a burst."""
-        return [Gaussian(as_fmpq(alpha), -as_fmpq(beta)) for alpha, beta in self.axes]
+    axes: Axes
 
 
 def absorbed(port: Port, level: Fraction, motion: Motion) -> Fraction:
@@ -86,10 +83,10 @@ def _integral(p: fmpq_poly, q: fmpq_poly) -> fmpq:
 def _burst_energy(port: Port, level: Fraction, motion: Motion) -> Fraction:
     """W/π, line by line."""
     step, cycles, power = motion.numbers
-    total, latent = fmpq(0), motion.latent
+    total = fmpq(0)
     for j, b in _lines(int(power)):
-        at = Gaussian(fmpq(0), as_fmpq((cycles + j) * step))
-        total += as_fmpq(b * b) * absorbed_at(port, level, at, latent)
+        at = fmpq(0), as_fmpq((cycles + j) * step)
+        total += as_fmpq(b * b) * absorbed_at(port, level, at, motion.axes)
     return as_fraction(total) / step
 
 
@@ -154,8 +151,8 @@ def _played_burst(port: Port, motion: Motion, points: int) -> tuple[list[float],
     for entries in (port.inputs, port.outputs):
         total = [[0.0] * points for _ in range(port.axes)]
         for j, b in _lines(int(power)):
-            turn, at = 2 * pi * float(cycles + j), Gaussian(fmpq(0), as_fmpq((cycles + j) * step))
-            for axis, line in enumerate(answer(entries, at, motion.latent)):
+            turn, at = 2 * pi * float(cycles + j), (fmpq(0), as_fmpq((cycles + j) * step))
+            for axis, line in enumerate(answer(entries, at, motion.axes)):
                 real, imaginary = (float(as_fraction(v) * b) for v in line)
                 total[axis] = [
                     t + real * cos(turn * at) - imaginary * sin(turn * at)
@@ -171,49 +168,34 @@ def _lines(power: int) -> Iterator[tuple[int, Fraction]]:
         yield j, (-1) ** (j % 2) * Fraction(comb(2 * power, power + j), 2**power)
 
 
-class Gaussian(NamedTuple):
-    """real + j imaginary, rationals."""
-
-    real: fmpq
-    imaginary: fmpq
+Point = tuple[fmpq, fmpq]
+"""Real and imaginary part, rational."""
 
 
-Vector = Sequence[Gaussian]
-ZERO = Gaussian(fmpq(0), fmpq(0))
-
-
-def place(port: Port, tangent: Fraction) -> Gaussian:
+def place(port: Port, tangent: Fraction) -> Point:
     """s = jω, ω = tangent; or z = e^{jθ}, tan θ/2 = tangent: rational on the unit circle."""
     t = as_fmpq(tangent)
     if port.time == "continuous":
-        return Gaussian(fmpq(0), t)
-    return Gaussian((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
+        return fmpq(0), t
+    return (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
 
 
-def answer(side: Polynomials, at: Gaussian, latent: Vector) -> list[Gaussian]:
-    """D φ or N φ of φ = latent · eˢᵗ."""
-    return [_dot([value(p, at) for p in row], latent) for row in side]
+def answer(side: Polynomials, at: Point, axes: Axes) -> list[Point]:
+    """D φ or N φ of φ = a eˢᵗ, a_i = α_i − jβ_i."""
+    real, imaginary = _parts(side, at)
+    alpha, beta = (fmpq_mat([[as_fmpq(x)] for x in column]) for column in zip(*axes, strict=True))
+    told = real * alpha + imaginary * beta, imaginary * alpha - real * beta
+    return list(zip(*(part.entries() for part in told), strict=True))
 
 
-def value(ascending: Sequence[int], at: Gaussian) -> Gaussian:
-    """A polynomial at a point."""
-    total = ZERO
-    for c in reversed(ascending):
-        total = _times(total, at)
-        total = Gaussian(total.real + c, total.imaginary)
-    return total
+def absorbed_at(port: Port, level: Fraction, at: Point, axes: Axes) -> fmpq:
+    """aᴴ Π_σ a: what a line of the latent a absorbs above the level."""
+    alpha, beta = zip(*axes, strict=True)
+    a = fmpq_mat([[as_fmpq(x)] for x in (*alpha, *(-b for b in beta))])
+    return (a.transpose() * fmpq_mat(as_real(*form_at(port, level, at))) * a)[0, 0]
 
 
-def absorbed_at(port: Port, level: Fraction, at: Gaussian, latent: Vector) -> fmpq:
-    """φᴴ Π_σ φ: what a line of the latent φ absorbs above the level."""
-    u, y = (answer(side, at, latent) for side in (port.inputs, port.outputs))
-    sigma, total = as_fmpq(level), fmpq(0)
-    for a, b in zip(u, y, strict=True):
-        total += a.real * b.real + a.imaginary * b.imaginary - sigma * (a.real**2 + a.imaginary**2)
-    return total
-
-
-def form_at(port: Port, level: Fraction, at: Gaussian) -> tuple[fmpq_mat, fmpq_mat]:
+def form_at(port: Port, level: Fraction, at: Point) -> tuple[fmpq_mat, fmpq_mat]:
     """Π_σ at a point, its real and its imaginary part."""
     (u, v), (y, z) = (_parts(side, at) for side in (port.inputs, port.outputs))
     y, z = y - u * as_fmpq(level), z - v * as_fmpq(level)
@@ -221,25 +203,15 @@ def form_at(port: Port, level: Fraction, at: Gaussian) -> tuple[fmpq_mat, fmpq_m
     return (real + real.transpose()) * fmpq(1, 2), (imaginary - imaginary.transpose()) * fmpq(1, 2)
 
 
-def _parts(side: Polynomials, at: Gaussian) -> tuple[fmpq_mat, fmpq_mat]:
-    """Of D or N at a point."""
-    rows = [[value(p, at) for p in row] for row in side]
-    real, imaginary = (fmpq_mat([[x[part] for x in row] for row in rows]) for part in (0, 1))
-    return real, imaginary
+def _parts(side: Polynomials, at: Point) -> tuple[fmpq_mat, fmpq_mat]:
+    """Of D or N at a point x + jy: what is left of each entry over (s − x)² + y² is a line in s."""
+    (x, y), size = at, len(side)
+    over = fmpq_poly([x * x + y * y, -2 * x, 1])
+    lines = [fmpq_poly(list(p)) % over for row in side for p in row]
+    real, imaginary = [p[0] + p[1] * x for p in lines], [p[1] * y for p in lines]
+    return fmpq_mat(size, size, real), fmpq_mat(size, size, imaginary)
 
 
 def to_float(value: fmpq) -> float:
     """The nearest double."""
     return float(as_fraction(value))
-
-
-def _dot(row: Vector, column: Vector) -> Gaussian:
-    total = ZERO
-    for a, b in zip(row, column, strict=True):
-        product = _times(a, b)
-        total = Gaussian(total.real + product.real, total.imaginary + product.imaginary)
-    return total
-
-
-def _times(a: Gaussian, b: Gaussian) -> Gaussian:
-    return Gaussian(a.real * b.real - a.imaginary * b.imaginary, a.real * b.imaginary + a.imaginary * b.real)

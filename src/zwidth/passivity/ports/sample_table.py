@@ -18,7 +18,7 @@ from flint import fmpq, fmpq_mat
 
 from zwidth.errors import InputError
 from zwidth.model.environment.system import number_of
-from zwidth.passivity.linear.exact_algebra import negative_direction
+from zwidth.passivity.linear.exact_algebra import as_real, negative_direction
 from zwidth.passivity.result import Result
 from zwidth.quantity.answered import known
 from zwidth.quantity.balls import as_fmpq
@@ -229,10 +229,8 @@ def exactly(sample: Any, key: str) -> tuple[fmpq_mat, fmpq_mat]:
 
 
 def has_negative_eigenvalue(real: fmpq_mat, imaginary: fmpq_mat) -> bool:
-    """Of a Hermitian matrix, decided exactly, of the real symmetric one (Re −Im; Im Re)."""
-    rows = list(zip(real.tolist(), imaginary.tolist(), strict=True))
-    upper = [[*r, *(-x for x in i)] for r, i in rows]
-    return negative_direction(upper + [[*i, *r] for r, i in rows]) is not None
+    """Of a Hermitian matrix, decided exactly."""
+    return negative_direction(as_real(real, imaginary)) is not None
 
 
 def _on_diagonal(value: Fraction, size: int) -> fmpq_mat:
