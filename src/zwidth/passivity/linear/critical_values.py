@@ -21,7 +21,7 @@ from flint import Ordering, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import RationalFunction
-from zwidth.passivity.linear.exact_algebra import roots_inside
+from zwidth.passivity.linear.exact_algebra import interpolated, roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.balls import as_fmpq
 
@@ -81,20 +81,10 @@ def _criterion(loop: LinearLoop) -> fmpq_poly:
 
 def _interpolated(values: Sequence[fmpq_poly], at: Sequence[Fraction]) -> fmpz_mpoly:
     """The polynomial in c and m of these polynomials in c, times a positive integer."""
-    basis = []
-    for i, here in enumerate(at):
-        others = [other for j, other in enumerate(at) if j != i]
-        p = fmpq_poly([1])
-        for other in others:
-            p *= fmpq_poly([as_fmpq(-other), 1]) / as_fmpq(here - other)
-        basis.append(p)
-    order = max(len(value.coeffs()) for value in values)
-    rows = [
-        sum((value[j] * p for value, p in zip(values, basis, strict=True)), fmpq_poly()) for j in range(order)
-    ]
+    rows = interpolated(values, [as_fmpq(m) for m in at])
     whole = lcm(1, *(int(row.denom()) for row in rows))
     return _RING.from_dict(
-        {(j, i): int(c * whole) for j, row in enumerate(rows) for i, c in enumerate(row.coeffs()) if c}
+        {(j, i): int(c * whole) for i, row in enumerate(rows) for j, c in enumerate(row.coeffs()) if c}
     )
 
 

@@ -219,6 +219,14 @@ def from_whole_cosines(a: Sequence[fmpz | int]) -> fmpz_poly:
     return from_whole_cosines(low) + fmpz_poly.chebyshev_t(m) * upper
 
 
+def interpolated(values: Sequence[fmpq_poly], at: Sequence[fmpq]) -> list[fmpq_poly]:
+    """The p_j(c) of Σ m^j p_j(c), which is each of the values at its m."""
+    width = range(max(value.length() for value in values) or 1)
+    powers = fmpq_mat([[m**j for j in range(len(at))] for m in at])
+    found = powers.solve(fmpq_mat([[value[k] for k in width] for value in values]))
+    return [fmpq_poly(row) for row in found.tolist()]
+
+
 def as_real(real: fmpq_mat, imaginary: fmpq_mat) -> list[list[fmpq]]:
     """The symmetric matrix (Re −Im; Im Re), of twice the size, with the values of a Hermitian one."""
     rows = list(zip(real.tolist(), imaginary.tolist(), strict=True))

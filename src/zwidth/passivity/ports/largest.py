@@ -15,7 +15,7 @@ from itertools import pairwise
 
 from flint import fmpq, fmpq_poly
 
-from zwidth.passivity.linear.exact_algebra import real_roots, roots_inside
+from zwidth.passivity.linear.exact_algebra import interpolated, real_roots, roots_inside
 from zwidth.passivity.ports.circle import Time, growing_place, has_positive_sign, near, places_of, vanishes
 from zwidth.passivity.ports.port import Port, common_factor
 from zwidth.passivity.ports.positive_real import is_stable, minors_at, prove_minors
@@ -246,21 +246,8 @@ def spectrum(port: Port) -> Spectrum | None:
     samples = [minors_at(port, level) for level in range(port.axes + 1)]
     if any(minor.degree() >= 0 for minors in samples for minor in minors[rank:]):
         return None
-    return _split(_interpolated([minors[rank - 1] for minors in samples[: rank + 1]]))
-
-
-def _interpolated(values: list[fmpq_poly]) -> list[fmpq_poly]:
-    """The coefficients of σʲ from the values at σ = 0, 1, 2 …, by divided differences."""
-    newton, row = [values[0]], values
-    for step in range(1, len(values)):
-        row = [(b - a) * fmpq(1, step) for a, b in pairwise(row)]
-        newton.append(row[0])
-    total: list[fmpq_poly] = []
-    for node in range(len(newton) - 1, -1, -1):  # total·(σ − node) + newton[node]
-        raised = [fmpq_poly([]), *total]
-        total = [a - b * node for a, b in zip(raised, [*total, fmpq_poly([])], strict=True)]
-        total[0] += newton[node]
-    return total
+    levels = [fmpq(level) for level in range(rank + 1)]
+    return _split(interpolated([minors[rank - 1] for minors in samples[: rank + 1]], levels))
 
 
 def _split(coefficients: list[fmpq_poly]) -> Spectrum:
