@@ -16,7 +16,7 @@ from zwidth.loop.kernel import R_COMMAND, R_READING, first_due
 from zwidth.loop.pair.kernel import Arm, read, through
 from zwidth.loop.pair.setup import Holder, prepare_pair
 from zwidth.loop.pair.simulate import build_pair_trace
-from zwidth.loop.plant import FAULT, FORCE, GOAL, WORK
+from zwidth.loop.plant import FAULT, FORCE, GOAL, TOO_MANY_STOPS, WORK
 from zwidth.loop.trace import Trace
 from zwidth.model.pairs import Pair
 from zwidth.native.compiled import Array, compiled
@@ -86,23 +86,14 @@ def simulated(
     follower_hand: Holder,
     duration: RealLike,
     *,
-    encoder_phase: tuple[float, float] = (0.0, 0.0),
-    points_per_sample: int = 1,
     progress: Callable[[int, int], None] | None = None,
+    **how: Any,
 ) -> Trace:
     """What `simulate` returns, before it is a Dataset."""
     check_ends(leader, follower)
     # a pair lays out both arms; its spring is not used
     pair = Pair(leader.device, follower.device, stiffness=1)
-    setup = prepare_pair(
-        pair,
-        leader_hand,
-        follower_hand,
-        duration,
-        encoder_phase=encoder_phase,
-        amplifier=None,
-        points_per_sample=points_per_sample,
-    )
+    setup = prepare_pair(pair, leader_hand, follower_hand, duration, **how)
     ends = _ends(leader, follower, schedule, setup.ticks)
     for arm in setup.arms:
         arm.state[FORCE] = arm.state[GOAL] = 0.0
@@ -111,10 +102,7 @@ def simulated(
     if progress is not None:
         progress(setup.ticks, setup.ticks)
     if any(arm.state[FAULT] for arm in setup.arms):
-        raise InputError(
-            "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
-            "so many orders of magnitude that rounding decides; scale them closer together"
-        )
+        raise InputError(TOO_MANY_STOPS)
     trace = build_pair_trace(setup, total)
     late = float(schedule.delay)
     trace.attrs |= {
@@ -264,7 +252,7 @@ def law_send(code: float, p: Array, s: Array, moved: float) -> None:
     elif code == waves.NAIVE_WAVES:
         waves.naive_send(p, s, moved)
     elif code == springs.POSITION_HOLD:
-        springs.position_send(p, s, moved)
+        springs.move_on(p, s, moved)
     elif code == springs.TIME_DOMAIN:
         springs.damped_send(p, s, moved)
     else:

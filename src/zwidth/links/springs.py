@@ -53,7 +53,7 @@ def pull(p: Array, s: Array) -> float:
 
 
 @compiled
-def move_on(s: Array, moved: float) -> None:
+def move_on(p: Array, s: Array, moved: float) -> None:
     """The own position is what is sent."""
     s[MOVED] = moved
     s[POSITION] += moved
@@ -67,12 +67,6 @@ POSITION_HOLD = 4.0
 def position_force(p: Array, s: Array) -> float:
     """K (x_other − x), the last position heard held."""
     return apply(p, s, pull(p, s))
-
-
-@compiled
-def position_send(p: Array, s: Array, moved: float) -> None:
-    """The position."""
-    move_on(s, moved)
 
 
 @dataclass(frozen=True)
@@ -89,7 +83,7 @@ class PositionHold(Springs):
 
     title: ClassVar[str] = "positions, the last one held"
     code: ClassVar[float] = POSITION_HOLD
-    steps: ClassVar = (position_force, position_send)
+    steps: ClassVar = (position_force, move_on)
 
 
 # Each end counts what its hand puts into the link, E_in, and what comes out there, E_out.  It hears the
@@ -126,7 +120,7 @@ def damped_send(p: Array, s: Array, moved: float) -> None:
         s[_OUT] += work
     else:
         s[ENERGY] -= work
-    move_on(s, moved)
+    move_on(p, s, moved)
 
 
 @dataclass(frozen=True)
@@ -196,7 +190,7 @@ def tank_send(p: Array, s: Array, moved: float) -> None:
     share = _SHARE * max(s[_TANK], 0.0)
     s[_TANK] -= share
     s[ENERGY] += share
-    move_on(s, moved)
+    move_on(p, s, moved)
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
-from math import ceil, floor, inf, isfinite, log10
+from math import inf, isfinite
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
@@ -21,7 +20,6 @@ from zwidth.model.device import Device
 from zwidth.model.device.catalogue import DeviceInRange, Range
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.corners import Loop, worst_corners
 from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
 from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
 from zwidth.passivity.scope import unit_key
@@ -31,7 +29,7 @@ from zwidth.quantity.answered import answered, data_of, known
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import in_words, shown, told_quantity
+from zwidth.quantity.text import in_words, outward_decimal, shown, told_quantity
 
 _BETTER = {"damping": 1, "coulomb_friction": 1, "resolution": 0, "sample_period": 0, "delay": 0}
 """Of what a verdict depends on: which end, low or high, asks for less."""
@@ -129,7 +127,7 @@ class OverRanges:
             side = "at least" if _BETTER[first.key] or name == "rate" else "at most"
             enough = shown(first.enough, GLOSSARY[first.key].unit_for(self.motion), 3)
             if name == "rate":
-                enough = shown(_rounded_up(1 / first.enough), "Hz", 3)
+                enough = shown(outward_decimal(1 / first.enough, True, 3), "Hz", 3)
             return f"{name}: if it is {side} {enough}, this is passive for every device in the other ranges"
         grows = "from none" if first.times == inf else f"{first.times:.2g} times"
         return f"{name}: over its range the largest stiffness grows {grows}, more than over any other"
@@ -138,12 +136,6 @@ class OverRanges:
 def _key(key: str, own: Range) -> str:
     """What the range is of: of a period it is stated as a rate."""
     return "rate" if own.unit == "Hz" else key
-
-
-def _rounded_up(value: float) -> float:
-    """To three digits."""
-    unit = 10.0 ** (floor(log10(value)) - 2)
-    return ceil(value / unit) * unit
 
 
 def _named(key: str, own: Range) -> str:
@@ -191,8 +183,7 @@ def _proved_up_to(device: Device, law: Environment) -> float:
         return largest
     factor = spoken(GLOSSARY["stiffness"].unit_for(device.motion))[0]
     for digits in (3, 2):
-        scale = 10.0 ** (floor(log10(largest * factor)) - digits + 1)
-        rounded = floor(largest * factor / scale * (1 + 1e-12)) * scale / factor
+        rounded = outward_decimal(largest * factor, False, digits) / factor
         if rounded > 0 and _is_passive(device, law.replace(stiffness=Exact(f"{rounded:.15g}"))):
             return rounded
     return 0.0
@@ -217,12 +208,7 @@ def _largest(device: Device, law: Environment) -> float:
 
 def _all_hold(device: Device, law: Environment) -> bool:
     """Whether every corner of the box is proved, contact made and broken."""
-    corners = [partial(_itself, corner) for corner in worst_corners(device, law)]
-    return all(provable(corner, Fraction(0), True) for corner in corners)
-
-
-def _itself(corner: Loop, _: Fraction) -> Loop:
-    return corner
+    return provable(lambda _: (device, law), Fraction(0), True)
 
 
 def _first(device: Device, keys: list[str], law: Environment) -> Measure | None:
@@ -266,16 +252,8 @@ def _enough(device: Device, key: str, law: Environment) -> float | None:
     found = search(holds, float((low + high) / 2), COARSER)
     if found is None:
         return None
-    value = _outward(found, upward, spoken(GLOSSARY[key].unit_for(device.motion))[0])
+    factor = spoken(GLOSSARY[key].unit_for(device.motion))[0]
+    value = float(f"{outward_decimal(found * factor, upward, 3) / factor:.15g}")
     value = min(max(value, float(low)), float(high))
     part = Interval(Exact(value), Exact(high)) if upward else Interval(Exact(low), Exact(value))
     return value if _is_passive(device.replace(**{key: part}), law) else None
-
-
-def _outward(value: float, upward: bool, factor: float) -> float:
-    """Three digits, on the side of more damping or of a finer encoder, in the unit that is told."""
-    if value == 0 or not isfinite(value):
-        return value
-    scale = 10.0 ** (floor(log10(value * factor)) - 2)
-    steps = value * factor / scale
-    return float(f"{((-floor(-steps)) if upward else floor(steps)) * scale / factor:.15g}")

@@ -91,9 +91,9 @@ def prepare_pair(
     follower: Holder,
     duration: RealLike,
     *,
-    encoder_phase: tuple[float, float],
-    amplifier: Amplifier | None,
-    points_per_sample: int,
+    encoder_phase: tuple[float, float] = (0.0, 0.0),
+    amplifier: Amplifier | None = None,
+    points_per_sample: int = 1,
     friction: tuple[FrictionCurve | None, FrictionCurve | None] = (None, None),
 ) -> PairSetup:
     """Check everything and lay it out; arguments as of `simulate_pair`."""

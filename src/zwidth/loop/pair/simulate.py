@@ -96,17 +96,9 @@ def simulate_pair(
     InputError
         If something is missing, not finite, of the wrong length, or out of its bounds.
     """
-    return simulated_pair(
-        pair,
-        leader,
-        follower,
-        duration,
-        encoder_phase=encoder_phase,
-        amplifier=amplifier,
-        points_per_sample=points_per_sample,
-        friction=friction,
-        progress=progress,
-    ).dataset()
+    given = {"encoder_phase": encoder_phase, "amplifier": amplifier, "points_per_sample": points_per_sample}
+    how: dict[str, Any] = {**given, "friction": friction, "progress": progress}
+    return simulated_pair(pair, leader, follower, duration, **how).dataset()
 
 
 def simulated_pair(
@@ -116,22 +108,13 @@ def simulated_pair(
     duration: RealLike,
     *,
     encoder_phase: tuple[float, float] | float = 0.0,
-    amplifier: Amplifier | None = None,
-    points_per_sample: int = 1,
     friction: Friction | tuple[Friction, Friction] = None,
     progress: Callable[[int, int], None] | None = None,
+    **how: Any,
 ) -> Trace:
     """What `simulate_pair` returns, before it is a Dataset."""
-    setup = prepare_pair(
-        pair,
-        leader,
-        follower,
-        duration,
-        encoder_phase=_both(encoder_phase),
-        amplifier=amplifier,
-        points_per_sample=points_per_sample,
-        friction=_curves(friction),
-    )
+    phases, curves = _both(encoder_phase), _curves(friction)
+    setup = prepare_pair(pair, leader, follower, duration, encoder_phase=phases, friction=curves, **how)
     done = _run(setup, progress)
     if any(arm.state[FAULT] for arm in setup.arms):
         raise InputError(TOO_MANY_STOPS)
