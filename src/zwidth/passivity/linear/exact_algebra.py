@@ -149,13 +149,13 @@ def _is_schur(ascending: tuple[int, ...]) -> bool:
         return False  # roots on the circle, and pairs that mirror each other in it, are common to both
     for bits in _PRECISIONS:
         with precision(bits):
-            answer = _in_balls(arb_poly(p))
+            answer = decays_in_balls(arb_poly(p))
         if answer is not None:
             return answer
     return _on_integers(p)
 
 
-def _in_balls(p: arb_poly) -> bool | None:
+def decays_in_balls(p: arb_poly) -> bool | None:
     """Whether p is Schur; None where the balls are too wide to tell."""
     while p.degree() > 0:
         ratio = p[0] / p[p.degree()]

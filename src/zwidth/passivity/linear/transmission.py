@@ -30,7 +30,7 @@ from math import cos, inf, pi
 
 from flint import acb, arb, arb_poly, fmpz_poly
 
-from zwidth.passivity.linear.exact_algebra import is_schur
+from zwidth.passivity.linear.exact_algebra import decays_in_balls, is_schur
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
 from zwidth.quantity.balls import ball, middle, precision
@@ -156,7 +156,7 @@ class Elastic:
             force = arb_poly([arb(0)] * loop.whole_delay + [arb(c) for c in loop.numerator])
             closed = law * arb_poly(swings[0]) + force * arb_poly(swings[1])
             size = max(len(loop.denominator) + 2, len(loop.numerator) + loop.whole_delay + 3)
-            return _decays([closed[i] for i in range(size)])
+            return decays_in_balls(arb_poly([closed[i] for i in reversed(range(size))]))
 
     def _swing(self) -> tuple[list[arb], list[arb]]:
         """det(z − Φ) z⁻² and the motor's position after its held force, ascending in z⁻¹."""
@@ -235,17 +235,6 @@ def _size(value: acb) -> arb:
 
 def _times_power(value: Fraction, shift: int) -> int:
     return round(value * (1 << shift)) if shift >= 0 else round(value / (1 << -shift))
-
-
-def _decays(p: list[arb]) -> bool | None:
-    """All roots of Σ p_i z^(n−i) inside the unit circle, by Schur and Cohn; None where that is open."""
-    while len(p) > 1:
-        first, last = p[0], p[-1]
-        if not abs(last) < abs(first):
-            return False if abs(last) > abs(first) else None
-        p = [first * x - last * y for x, y in zip(p[:-1], p[:0:-1], strict=True)]
-        p = [c / p[0] for c in p]
-    return True
 
 
 def _below(value: Callable[[Fraction], arb], degree: int, bits: int) -> tuple[fmpz_poly, int]:

@@ -16,18 +16,16 @@ from fractions import Fraction
 from math import ceil, pi
 
 import numpy as np
-from flint import arb
 
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.linear.exact_algebra import roots_inside
 from zwidth.passivity.linear.positivity import prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairWitness, energy_of
 from zwidth.passivity.witness.motion import Motion, Repeat
-from zwidth.passivity.witness.sinusoid import simplest_between
-from zwidth.quantity.balls import as_fmpq, middle, precision
+from zwidth.passivity.witness.sinusoid import band_about, enough_rounds, simplest_between
+from zwidth.quantity.balls import as_fmpq
 
 LONGEST_ROUND = 20_000
 """Samples of one round; a violation in a narrower band is proved without a motion."""
@@ -35,7 +33,6 @@ LONGEST_ROUND = 20_000
 _AMPLITUDE = Fraction(1, 1000)
 """About how far a hand goes where nothing asks for more [m; rad]."""
 
-_TURN_BITS = 256
 _SIZES = (6, 10, 14, 18, 22, 28, 36, 44)
 """Bits of the whole numbers that a round motion is made of."""
 
@@ -97,24 +94,11 @@ def _inside_samples(criterion: PairCriterion) -> Iterator[tuple[Path, tuple[Repe
 
 def _turns(criterion: PairCriterion) -> list[Fraction]:
     """Turns per sample θ/2π of simple denominator where one of the three is negative."""
-    found = []
-    for p in criterion.polynomials:
-        point = prove_nonnegative(p)
-        if not isinstance(point, Fraction):
-            continue
-        low, high = Fraction(0), Fraction(1, 2)
-        with precision(_TURN_BITS):
-            here = _turn(point)
-            for root in roots_inside(p, _TURN_BITS):
-                turn = _turn(root)
-                low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
-        margin = (high - low) / 4
-        found.append(simplest_between(low + margin, high if high == Fraction(1, 2) else high - margin))
+    points = ((p, prove_nonnegative(p)) for p in criterion.polynomials)
+    found = [
+        simplest_between(*band_about(p, as_fmpq(point))) for p, point in points if isinstance(point, Fraction)
+    ]
     return sorted(found, key=lambda turn: turn.denominator)
-
-
-def _turn(cosine: Fraction) -> Fraction:
-    return middle(arb(as_fmpq(cosine)).acos() / (2 * arb.pi()))
 
 
 def _round(criterion: PairCriterion, turn: Fraction, bits: int) -> Path:
@@ -226,14 +210,7 @@ def often_enough(
         arm.often for arm in arms
     )
     first = 2 + ceil(memory / min(part.last - part.first for part in parts))
-    one = energy(1)
-    if one is not None and one > 0:
-        return 1
-    before, after = energy(first), energy(first + 1)
-    if before is None or after is None or after <= before:
-        return None
-    per_round = after - before
-    return first if before > 0 else first + 1 + ceil(-2 * before / per_round)
+    return enough_rounds(energy, first)
 
 
 def _rubbed(pair: Pair, one: list[Motion], times: int) -> Fraction:

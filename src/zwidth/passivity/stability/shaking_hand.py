@@ -25,7 +25,7 @@ from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.stability.characteristic import as_floats, decays
 from zwidth.quantity.answered import answered, known
-from zwidth.quantity.balls import as_fmpq, precision
+from zwidth.quantity.balls import as_fmpq, as_fraction, precision
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.text import told_quantity
 
@@ -223,7 +223,6 @@ def _force(loop: LinearLoop) -> tuple[list[Fraction], int]:
 
 PI = Fraction(3141592653589793239, 10**18)
 """Above π, by less than 1e-18."""
-_TERMS = 30
 
 
 class Band(NamedTuple):
@@ -252,14 +251,9 @@ def band_of(below: Fraction, period: Fraction) -> Band:
             f"{float(below):g} Hz: a hand that is active above has no limit in a sampled loop"
         )
     angle = 2 * PI * below * period
-    total, term = Fraction(1), Fraction(1)
-    for k in range(1, _TERMS, 2):  # ends with a negative term: from below
-        term = -term * angle**2 / ((2 * k - 1) * 2 * k)
-        following = -term * angle**2 / ((2 * k + 1) * (2 * k + 2))
-        total += term
-        if k + 2 < _TERMS:
-            total, term = total + following, following
-    return Band(below, angle, max(Fraction(-1), Fraction(floor(total * 10**15), 10**15)))
+    with precision(_BITS):
+        below_it = as_fraction(ball(angle).cos().lower().fmpq()) if angle < PI else Fraction(-1)
+    return Band(below, angle, Fraction(floor(below_it * 10**15), 10**15))
 
 
 def damping_inside(damping: Fraction, activity: Fraction, band: Band) -> Fraction | None:

@@ -8,7 +8,7 @@ enough of them pay for going in and out.
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from math import ceil, copysign, cos, isfinite, log, log2, pi, sin
 
@@ -145,10 +145,15 @@ def negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
         if not isinstance(point, Fraction):
             return None
         at = as_fmpq(point)
+    return band_about(criterion, at)
+
+
+def band_about(p: fmpz_poly, cosine: fmpq) -> tuple[Fraction, Fraction]:
+    """The same of any polynomial in cos θ, about a place where it is negative."""
     low, high = Fraction(0), Fraction(1, 2)
     with precision(_TURN_BITS):
-        here = _turn(at)
-        for root in roots_inside(criterion, _TURN_BITS):
+        here = _turn(cosine)
+        for root in roots_inside(p, _TURN_BITS):
             turn = _turn(as_fmpq(root))
             low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
     margin = (high - low) / 4
@@ -238,6 +243,17 @@ def _switches(loop: LinearLoop, x: list[int]) -> tuple[Fraction, ...]:
         for k in range(len(x) - 1)
     )
     return tuple(Fraction(round(16 * y), 16) for y in ideal)
+
+
+def enough_rounds(energy: Callable[[int], Fraction | None], first: int = 2) -> int | None:
+    """Rounds after which a repeated motion has gained: energy is affine in them from the first on."""
+    one = energy(1)
+    if one is not None and one > 0:
+        return 1
+    before, after = energy(first), energy(first + 1)
+    if before is None or after is None or after <= before:
+        return None
+    return first if before > 0 else first + 1 + ceil(-2 * before / (after - before))
 
 
 def forces_of(loop: LinearLoop, x: list[int]) -> list[float]:

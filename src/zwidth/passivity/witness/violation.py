@@ -24,6 +24,7 @@ from zwidth.passivity.witness.motion import Motion, Pattern, best_waits, edge_cr
 from zwidth.passivity.witness.sinusoid import (
     PRESS_LENGTHS,
     buildups,
+    enough_rounds,
     holds,
     oscillations,
     sinusoids,
@@ -222,7 +223,7 @@ def _shortest(setting: Setting, patterns: Iterator[Pattern]) -> Witness | None:
 def _rounds(setting: Setting, pattern: Pattern) -> int | None:
     """Rounds with which the pattern gains in the ideal loop."""
     one = realize(setting.loop, pattern, Fraction(1), Fraction(0), 1)
-    return _enough_rounds(lambda n: setting.ideal().energy(one.repeated(n)))
+    return enough_rounds(lambda n: setting.ideal().energy(one.repeated(n)))
 
 
 def _sized(setting: Setting, pattern: Pattern, times: int | None = None) -> Witness | None:
@@ -313,21 +314,5 @@ def _repeated(setting: Setting, motion: Motion) -> Witness | None:
         energy = setting.energy(motion.repeated(rounds))
         return None if energy is None else energy - setting.stored
 
-    times = _enough_rounds(gain)
+    times = enough_rounds(gain)
     return None if times is None else setting.witness(motion.repeated(times))
-
-
-def _enough_rounds(energy: Callable[[int], Fraction | None]) -> int | None:
-    """Rounds after which a repeated motion has gained: energy is affine in them from the second on."""
-    one = energy(1)
-    if one is None:
-        return None
-    if one > 0:
-        return 1
-    two, three = energy(2), energy(3)
-    if two is None or three is None:
-        return None
-    per_round = three - two
-    if per_round <= 0:
-        return None
-    return 2 if two > 0 else 3 + ceil(-2 * two / per_round)
