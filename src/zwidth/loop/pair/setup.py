@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_NONE = np.empty(0)
-
 
 class Nobody(Operator):
     """No hand: the arm moves as the actuator drives it."""
@@ -176,10 +174,7 @@ def _arm(
     curve = lines_of(friction)
     free = frame.plant if friction is None else frame.plant._replace(stiction=float(curve[0, COULOMB_PART]))
     samples, often = frame.samples, pair.own_readings
-    s = frame.signals
-    force, anchor, target, switch = (
-        _NONE if v is None else v for v in (s.force, s.anchor, s.position, s.switch_position)
-    )
+    force, anchor, target, switch = frame.optional()
     return Arm(
         plant=free,
         inside=free if wall is None else _inside(free, wall),

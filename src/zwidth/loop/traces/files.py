@@ -35,6 +35,7 @@ from zwidth.loop.trace import (
     attributes_of,
 )
 from zwidth.missing import did_you_mean
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.reading import check_hdf5, check_parquet, shown_only
 from zwidth.writing import check_target, first_line, writing_whole
 
@@ -59,8 +60,6 @@ _OF_BOTH: dict[str, Callable[[Any], bool]] = {
     "stored_at_start_J": lambda value: isinstance(value, Real),
 }
 """The same of a pair."""
-
-_KEYS = {"m/s": "m_per_s", "rad/s": "rad_per_s", "N*m": "N_m"}
 
 
 def save_trace(trace: xr.Dataset, path: str | PathLike[str], *, force: bool = False) -> None:
@@ -118,7 +117,7 @@ def load_trace(path: str | PathLike[str]) -> xr.Dataset:
 
 def column_name(variable: str, unit: str) -> str:
     """The name of a column with its unit: position_m."""
-    return f"{variable}_{_KEYS.get(unit, unit)}"
+    return f"{variable}_{unit_suffix(unit)}"
 
 
 def _format(path: Path) -> tuple[Callable[[xr.Dataset, IO[bytes]], None], Callable[[Path], xr.Dataset]]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from zwidth.errors import InputError
 from zwidth.loop.energy import ledger
 from zwidth.loop.trace import UNITS
+from zwidth.quantity.glossary import unit_suffix
 
 if TYPE_CHECKING:
     from zwidth.loop.trace import AnyTrace
@@ -48,9 +49,6 @@ the last quarter of the time.
 """
 
 
-_KEYS = {"N*m": "N_m"}
-
-
 def units_of(motion: str) -> dict[str, str]:
     """The unit of each number."""
     units = (*UNITS[motion], "J", "")
@@ -60,7 +58,7 @@ def units_of(motion: str) -> dict[str, str]:
 def keyed(row: dict[str, float], motion: str) -> dict[str, float | None]:
     """The numbers with their units in the keys; None for what is not known."""
     units = units_of(motion)
-    names = {name: f"{name}_{_KEYS.get(unit, unit)}" if unit else name for name, unit in units.items()}
+    names = {name: f"{name}_{unit_suffix(unit)}" if unit else name for name, unit in units.items()}
     return {names[name]: None if isnan(value) else value for name, value in row.items()}
 
 

@@ -101,14 +101,8 @@ def decays(ascending: Sequence[int], time: Time) -> bool:
 
 
 def all_outside(in_zeta: Sequence[int]) -> bool:
-    """Every root ζ has |ζ| > 1: from rigorous balls about them, or where these touch the circle exactly."""
-    if in_zeta[0] == 0:
-        return False
-    p = fmpz_poly(list(in_zeta))
-    sizes = [abs(root) for root, _ in p.complex_roots()] if p.degree() > 0 else []
-    if any(size < 1 for size in sizes):
-        return False
-    return all(size > 1 for size in sizes) or is_schur(in_zeta[::-1])
+    """Every root ζ has |ζ| > 1, decided exactly."""
+    return in_zeta[0] != 0 and is_schur(in_zeta[::-1])
 
 
 def places_of(p: fmpz_poly) -> list[complex]:

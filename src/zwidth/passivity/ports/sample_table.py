@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import groupby
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -239,13 +240,10 @@ def _on_diagonal(value: Fraction, size: int) -> fmpq_mat:
 
 def _runs(flags: Sequence[bool]) -> Iterator[tuple[int, int]]:
     """(first, last) of each run of True."""
-    first = None
-    for k, flag in enumerate((*flags, False)):
-        if flag and first is None:
-            first = k
-        elif not flag and first is not None:
-            yield first, k - 1
-            first = None
+    for flag, places in groupby(range(len(flags)), flags.__getitem__):
+        if flag:
+            first, *_, last = [*places] * 2
+            yield first, last
 
 
 #     power in at one frequency = ½ uᴴ ½(G + Gᴴ) u,    λ_min(½(G + Gᴴ)) ≥ 0 at every sample f_k

@@ -7,7 +7,7 @@ filter back to rest.  D is taken without its integer content (`follower`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -142,6 +142,17 @@ def _switches(
     grid = unit / 4096
     ideal = (x[k] + alpha * (x[k + 1] - x[k]) - gain * (at(k - d - 1) - at(k - d)) for k in range(len(x) - 1))
     return tuple(round(y / grid) * grid for y in ideal)
+
+
+def forces_of(loop: LinearLoop, x: Sequence[float]) -> list[float]:
+    """f(k) to rounding."""
+    d = [c / loop.denominator[0] for c in loop.denominator]
+    n = [c / loop.denominator[0] for c in loop.numerator]
+    f: list[float] = []
+    for k in range(len(x)):
+        value = sum(c * x[k - i] for i, c in enumerate(n) if k >= i)
+        f.append(value - sum(d[i] * f[k - i] for i in range(1, len(d)) if k >= i))
+    return f
 
 
 def any_damping(loop: LinearLoop) -> Fraction:

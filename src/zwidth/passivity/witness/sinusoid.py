@@ -18,7 +18,7 @@ from zwidth.passivity.linear.criterion import closed_loop, offset_of, tightest
 from zwidth.passivity.linear.exact_algebra import is_schur, roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import prove_nonnegative
-from zwidth.passivity.witness.motion import Motion, Pattern, Repeat, any_damping, convolve
+from zwidth.passivity.witness.motion import Motion, Pattern, Repeat, any_damping, convolve, forces_of
 from zwidth.quantity.balls import as_fmpq, middle, precision
 
 LONGEST_PERIOD = 10_000
@@ -254,17 +254,6 @@ def enough_rounds(energy: Callable[[int], Fraction | None], first: int = 2) -> i
     if before is None or after is None or after <= before:
         return None
     return first if before > 0 else first + 1 + ceil(-2 * before / (after - before))
-
-
-def forces_of(loop: LinearLoop, x: list[int]) -> list[float]:
-    """f(k) to rounding."""
-    d = [c / loop.denominator[0] for c in loop.denominator]
-    n = [c / loop.denominator[0] for c in loop.numerator]
-    f: list[float] = []
-    for k in range(len(x)):
-        value = sum(c * x[k - i] for i, c in enumerate(n) if k >= i)
-        f.append(value - sum(d[i] * f[k - i] for i in range(1, len(d)) if k >= i))
-    return f
 
 
 # Of a loop whose criterion is nonnegative but whose environment is not stable: a negative static stiffness

@@ -14,7 +14,7 @@ from zwidth.checker import verify
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact, loop_document, unit_key
-from zwidth.passivity.witness.motion import Motion
+from zwidth.passivity.witness.motion import Motion, forces_of
 from zwidth.passivity.wording import size
 from zwidth.quantity.text import quantity_unit, shown
 
@@ -62,16 +62,7 @@ class Setting:
 
     def peak_force(self, positions: tuple[Fraction, ...]) -> float:
         """Largest force of the law at these positions, to rounding [N; N·m]."""
-        d = [c / self.loop.denominator[0] for c in self.loop.denominator[1:]]
-        n = [c / self.loop.denominator[0] for c in self.loop.numerator]
-        past = [0.0] * max(len(d), len(n) - 1)
-        peak = 0.0
-        for x in map(float, positions):
-            w = x - sum(a * v for a, v in zip(d, past, strict=False))
-            past = [w, *past]
-            peak = max(peak, abs(sum(a * v for a, v in zip(n, past, strict=False))))
-            past.pop()
-        return peak
+        return max(map(abs, forces_of(self.loop, [float(x) for x in positions])))
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""

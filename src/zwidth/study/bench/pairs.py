@@ -11,7 +11,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.loop.simulate import simulate
-from zwidth.loop.traces.measures import static_stiffness
+from zwidth.loop.traces.measures import static_stiffness, tracking_error
 from zwidth.model.environment import Wall
 from zwidth.model.operator import PrescribedMotion, RecordedForce
 from zwidth.model.pairs import Pair
@@ -196,7 +196,7 @@ def _dataset(
     values: dict[str, list[float]] = {
         "largest_stiffness": [verdict.largest_stiffness or 0.0 for verdict in verdicts.values()],
         "felt_stiffness": [_felt(own["press"]) for own in traces.values()],
-        "tracking_error": [_apart(own["stroke"]) for own in traces.values()],
+        "tracking_error": [tracking_error(own["stroke"]) for own in traces.values()],
         "missing_damping": [missing_damping(pair) for pair in pairs.values()],
     }
     motion = next(iter(pairs.values())).motion
@@ -219,11 +219,6 @@ def _felt(trace: xr.Dataset) -> float:
     speed = np.abs(leader["velocity"].values[-leader.sizes["time"] // 10 :]).max()
     swings = speed > 0.1 * np.abs(leader["velocity"].values).max()
     return float("nan") if swings or "diverged_at_s" in trace.attrs else found
-
-
-def _apart(trace: xr.Dataset) -> float:
-    leader, follower = trace["position"].values
-    return float(np.sqrt(np.mean((leader - follower) ** 2)))
 
 
 def _plain(values: xr.DataArray, name: str) -> float | None:

@@ -8,6 +8,7 @@ are enough and necessary (`spring_stiffness`; Abbott & Okamura 2005).  A loop ne
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -274,7 +275,7 @@ def parts(loop: Loop, stiffnesses: Floats) -> list[Part]:
     law = softest.wall
     if not isinstance(law, DampedWall) or not _is_usual(law, softest.loop):
         return []
-    covered = _first(len(order), lambda place: not _covers(at(place)))
+    covered = bisect_left(range(len(order)), True, key=lambda place: not _covers(at(place)))
     violated = _violated(covered, len(order), at)
     binding = _binding(softest, law, stiffnesses)
     softer, stiffer = order[:covered], order[violated:]
@@ -319,19 +320,7 @@ def _violated(first: int, size: int, at: Callable[[int], Decision]) -> int:
 
     if first >= size or not is_rising(size - 1):
         return size
-    return first + _first(size - first, lambda place: is_rising(first + place))
-
-
-def _first(size: int, holds: Callable[[int], bool]) -> int:
-    """The first place at which something holds, if it holds from there on; `size` where it never does."""
-    low, high = 0, size
-    while low < high:
-        middle = (low + high) // 2
-        if holds(middle):
-            high = middle
-        else:
-            low = middle + 1
-    return low
+    return bisect_left(range(size), True, first, key=is_rising)
 
 
 def _binding(decision: Decision, law: DampedWall, stiffnesses: Floats) -> NDArray[np.uint8]:

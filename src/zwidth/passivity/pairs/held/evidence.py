@@ -18,10 +18,10 @@ from zwidth.loop.sampled_plant import Motion
 from zwidth.model.pairs import Pair
 from zwidth.passivity.linear.criterion import frequency, tightest
 from zwidth.passivity.pairs.evidence import CERTIFICATE, VIOLATION, WITNESS, pair_document
-from zwidth.passivity.pairs.held.law import HeldPair, felt, felt_loop
+from zwidth.passivity.pairs.held.law import HeldPair, felt_loop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import unit_key
-from zwidth.passivity.witness.motion import Repeat
+from zwidth.passivity.witness.motion import Repeat, forces_of
 from zwidth.quantity.text import exact_text, shown, told_quantity
 
 
@@ -212,14 +212,8 @@ def _gained(violation: HeldViolation, path: Floats) -> tuple[float, float]:
     """What it takes out, Coulomb friction aside [J/m²; J/rad²], and how far it goes."""
     question = violation.question
     arm, period = question.arms[0], float(question.pair.sample_period)
-    law, _ = felt(question, violation.motion)
-    top, bottom = (np.array([float(c / law.denominator[0]) for c in part]) for part in law)
-    forces = np.zeros(len(path) + len(top))  # with as many before the start
-    moves = np.concatenate([np.zeros(len(top)), path])
-    for k in range(len(top), len(moves)):
-        back = slice(k - 1, k - len(top), -1)
-        forces[k] = top @ moves[k : k - len(top) : -1] - bottom[1:] @ forces[back]
-    steps, part = np.diff(moves), float(arm.part)
+    law, _ = felt_loop(question, violation.motion)
+    forces, steps, part = forces_of(law, path.tolist()), np.diff(path), float(arm.part)
     late, later = (np.concatenate([np.zeros(n), forces])[: len(steps)] for n in (arm.whole, arm.whole + 1))
     work = ((1 - part) * late + part * later) @ steps + float(arm.damping) / period * (steps @ steps)
     return -float(work), float(np.abs(steps).sum())
