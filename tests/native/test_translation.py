@@ -53,7 +53,7 @@ def step(x: float, y: float, n: int, a: Array) -> float:
             break
     rest = a[1:].copy()
     rest[FIRST], rest[SECOND] = rest[SECOND], rest[FIRST]
-    a[-1] = inner(rest, pair, steep=0.25)
+    a[-1] = inner(rest, pair, 1.5, steep=0.25)
     for k in range(4):
         if k > 0:
             below += last * k
@@ -67,7 +67,7 @@ def step(x: float, y: float, n: int, a: Array) -> float:
 
 
 @compiled
-def inner(a: Array, of: Pair, flat: float = 1.5, steep: float = 2.0) -> float:
+def inner(a: Array, of: Pair, flat: float, steep: float) -> float:
     table = np.full((2, 3), -1)
     table[1, THIRD] = 4
     row = table[1, :]
@@ -135,7 +135,10 @@ def test_c_has_the_bits_of_python(package: Path) -> None:
         ("def step(x: float) -> float: return other(x)\ndef other(x: float) -> float: return x", "decorate"),
         ("def step(x: float) -> float: return x or 1.0", "neither True nor False"),
         ("def step(a: Array) -> Array: return a[1:]", "returns none"),
-        ("def step(x: float) -> Pair:\n    return Pair(x, x) if x > 0 else (1, 2)", "a line of its own"),
+        ("def step(a: Array) -> float:\n    return a.copy()[0] if a[0] > 0 else 1.0", "a line of its own"),
+        ("def step(x: float) -> Pair:\n    return Pair(x, x) if x > 0 else (1, 2)", "is of two types"),
+        ("def step(x: float | None) -> float: return 1.0", "cannot take float | None"),
+        ("def step(x: float) -> bool: return x is x", "x is x is outside"),
         (
             "def step(a: Array) -> None:\n    a[at()] += 1.0\n@compiled\ndef at() -> int: return 0",
             "is no call",

@@ -14,7 +14,6 @@ from zwidth.native.types import (
     WHOLE,
     Asked,
     Cells,
-    Maybe,
     Number,
     Several,
     Signature,
@@ -49,7 +48,7 @@ class Around(Protocol):
 _OF_C = ("ceil", "sqrt", "sin", "cos", "exp", "expm1", "log1p", "log2")
 _LIBRARY = {"floor": "zw_floor", **{name: name for name in _OF_C}}
 _ASKED = {"isfinite": "isfinite", "isnan": "isnan"}
-_BUILTIN = ("min", "max", "abs", "int", "float", "bool", "len", "round")
+_BUILTIN = ("min", "max", "abs", "int", "float", "len", "round")
 
 
 class Expressions(Reader):
@@ -83,22 +82,6 @@ class Expressions(Reader):
             if to == TRUTH:
                 raise self.outside(node, "a number stands where True or False is said to")
             return f"(({to.c}){value.c})"
-        if isinstance(value.type, Maybe) and to == REAL:
-            return f"{value.c}.value"
-        if isinstance(to, Maybe) and isinstance(value.type, Number):
-            return f"(zw_maybe){{{value.c}, 1}}"
-        if (
-            isinstance(value.type, Several)
-            and isinstance(to, Several)
-            and len(to.items) == len(value.type.items)
-        ):
-            if value.type.items == to.items:
-                return value.c
-            name = self.fresh()
-            self.say(f"{value.type.c} {name} = {value.c};")
-            parts = (Read(f"{name}.f{n}", of) for n, of in enumerate(value.type.items))
-            told = ", ".join(self.cast(p, of, node) for p, of in zip(parts, to.items, strict=True))
-            return f"({to.c}){{{told}}}"
         raise self.outside(node, f"{value.type} stands where {to} is wanted")
 
     def truth(self, node: ast.expr) -> str:
@@ -124,10 +107,6 @@ class Expressions(Reader):
     def _name(self, node: ast.Name) -> Read:
         if node.id in self.types:
             return Read(f"{node.id}_", self.types[node.id])
-        found = self.module.meaning(node.id)
-        if isinstance(found, Defined) and is_step_function(found.node):
-            to = self.around.signature(found)
-            return Read(to.name, Asked(tuple(of for _, of in to.takes), to.returns))
         known = self.module.value(node)
         if isinstance(known, tuple):
             return self.around.constants(known)
@@ -141,7 +120,7 @@ class Expressions(Reader):
         return Read(f"(({of.c}){{{', '.join(p.c for p in parts)}}})", of)
 
     def _binop(self, node: ast.BinOp) -> Read:
-        a, b = self._there(node.left), self._there(node.right)
+        a, b = self.read(node.left), self.read(node.right)
         for part in (a, b):
             if not isinstance(part.type, Number):
                 raise self.outside(node, f"{ast.unparse(node)} calculates with {part.type}")
@@ -160,11 +139,6 @@ class Expressions(Reader):
             return Read(f"zw_opposite({b.c})", of)
         return Read(f"({a.c} {SPELLED[type(node.op)]} {b.c})", of)
 
-    def _there(self, node: ast.expr) -> Read:
-        """An operand; of what may be None the number."""
-        value = self.read(node)
-        return Read(f"{value.c}.value", REAL) if isinstance(value.type, Maybe) else value
-
     def _unaryop(self, node: ast.UnaryOp) -> Read:
         if isinstance(node.op, ast.Not):
             return Read(f"((int64_t)!{self.truth(node.operand)})", TRUTH)
@@ -176,9 +150,8 @@ class Expressions(Reader):
         parts, left = [], node.left
         for operator, right in zip(node.ops, node.comparators, strict=True):
             if isinstance(operator, ast.Is | ast.IsNot):
-                is_there = self.read(left)
-                parts.append(f"({'!' if isinstance(operator, ast.Is) else ''}{is_there.c}.is_there)")
-            elif isinstance(operator, ast.In | ast.NotIn):
+                raise self.outside(node, f"{ast.unparse(node)} is outside what is translated")
+            if isinstance(operator, ast.In | ast.NotIn):
                 known = self.module.value(right, self.types)
                 among = right.elts if isinstance(right, ast.Tuple) else [ast.Constant(v) for v in known or ()]
                 told = " || ".join(f"({self.read(left).c} == {self.read(a).c})" for a in among)
@@ -286,16 +259,15 @@ class Expressions(Reader):
             if isinstance(found.node, ast.ClassDef):
                 of = self.around.several(fields(found))
                 takes = tuple(zip(of.names, of.items, strict=True))
-                given = self._given(node, takes, {}, found.module, by_address=False)
+                given = self._given(node, takes, by_address=False)
                 return Read(f"(({of.c}){{{', '.join(given)}}})", of)
             if is_step_function(found.node):
                 to = self.around.signature(found)
-                given = self._given(node, to.takes, to.defaults, to.module)
-                return Read(f"{to.name}({', '.join(given)})", to.returns)
+                return Read(f"{to.name}({', '.join(self._given(node, to.takes))})", to.returns)
             raise self.outside(node, f"{name} is no step function: decorate it with compiled")
         if isinstance(found, Asked):
             takes = tuple((str(n), of) for n, of in enumerate(found.takes))
-            return Read(f"{name}_({', '.join(self._given(node, takes, {}, self.module))})", found.returns)
+            return Read(f"{name}_({', '.join(self._given(node, takes))})", found.returns)
         if getattr(found, "__name__", "") in _LIBRARY | _ASKED:
             return self._of_library(found.__name__, node)
         if isinstance(node.func, ast.Attribute):
@@ -312,28 +284,11 @@ class Expressions(Reader):
         return owner.meaning(node.attr) if isinstance(owner, Module) else None
 
     def _given(
-        self,
-        node: ast.Call,
-        takes: tuple[tuple[str, Type], ...],
-        defaults: dict[str, ast.expr],
-        owner: Module,
-        by_address: bool = True,
+        self, node: ast.Call, takes: tuple[tuple[str, Type], ...], by_address: bool = True
     ) -> list[str]:
-        told: dict[str, tuple[Read, ast.expr]] = {}
-        flat: list[tuple[Read, ast.expr]] = []
-        for argument in node.args:
-            if isinstance(argument, ast.Starred):
-                whole = self.read(argument.value)
-                if isinstance(whole.type, Several):
-                    flat += [(Read(f"{whole.c}.f{n}", of), argument) for n, of in enumerate(whole.type.items)]
-            else:
-                flat.append((self.read(argument), argument))
-        told.update({name: value for (name, _), value in zip(takes, flat, strict=False)})
-        told.update({k.arg: (self.read(k.value), k.value) for k in node.keywords if k.arg})
-        for name, default in defaults.items():
-            if name not in told:
-                told[name] = (literal(owner.value(default)), node)
-        if len(flat) > len(takes) or set(told) != {name for name, _ in takes}:
+        told = {name: (self.read(a), a) for (name, _), a in zip(takes, node.args, strict=False)}
+        told |= {k.arg: (self.read(k.value), k.value) for k in node.keywords if k.arg}
+        if len(node.args) > len(takes) or set(told) != {name for name, _ in takes}:
             raise self.outside(node, f"{ast.unparse(node.func)} takes {', '.join(n for n, _ in takes)}")
         return [self._argument(*told[name], of, by_address) for name, of in takes]
 
@@ -349,10 +304,8 @@ class Expressions(Reader):
             return Read(f"{first.c}.n[0]", WHOLE)
         if name == "round":
             return Read(f"((int64_t)rint({first.c}))", WHOLE)
-        if name in ("int", "float", "bool"):
-            of = {"int": WHOLE, "float": REAL, "bool": TRUTH}[name]
-            if of == TRUTH:
-                return Read(f"((int64_t)({first.c} != 0))", TRUTH)
+        if name in ("int", "float"):
+            of = {"int": WHOLE, "float": REAL}[name]
             return Read(f"(({of.c}){first.c})", of)
         if not all(isinstance(g.type, Number) for g in given):
             raise self.outside(node, f"{ast.unparse(node)} is not of numbers")

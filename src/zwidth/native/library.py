@@ -67,8 +67,6 @@ def _caller(entry: Any, takes: list[Any], returns: Any) -> Callable[..., Any]:
 def _row(of: Any, name: str) -> tuple[str, str]:
     """Codes of `struct` for an argument, and the Python that gives the words."""
     if isinstance(of, str):
-        if of == "m":
-            return "dq", f"0.0 if {name} is None else {name}, {name} is not None"
         return _SCALARS[of], f"int({name})" if of == "b" else name
     if "cells" in of:
         return "qqqqq", f"*array({name}, {_CODES[of['cells']]!r})"

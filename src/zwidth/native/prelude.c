@@ -11,7 +11,6 @@
 typedef struct { double *p; int64_t n[4]; } zw_reals;
 typedef struct { int64_t *p; int64_t n[4]; } zw_wholes;
 typedef struct { uint8_t *p; int64_t n[4]; } zw_bytes;
-typedef struct { double value; int64_t is_there; } zw_maybe;
 
 static inline void zw_let_go(void *owned) { free(*(void **)owned); }
 #define zw_own __attribute__((cleanup(zw_let_go), unused)) void *

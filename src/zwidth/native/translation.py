@@ -17,7 +17,6 @@ from zwidth.native.types import (
     WHOLE,
     Asked,
     Cells,
-    Maybe,
     Nothing,
     Number,
     Several,
@@ -153,8 +152,6 @@ _EXCHANGED = [Cells("float64"), Cells("uint8"), Cells("uint8")]
 def _taken(of: Type, words: Iterator[str]) -> str:
     if isinstance(of, Number):
         return f"{next(words)}.{'f' if of == REAL else 'i'}"
-    if isinstance(of, Maybe):
-        return f"(zw_maybe){{{next(words)}.f, {next(words)}.i}}"
     if isinstance(of, Cells):
         first, n = next(words), ", ".join(f"{next(words)}.i" for _ in range(4))
         return f"({of.c}){{{first}.p, {{{n}}}}}"
@@ -304,10 +301,7 @@ class Function(Expressions):
         self.say("} }")
 
     def _one_by_one(self, node: ast.For) -> None:
-        known = self.module.value(node.iter, self.types)
         parts = node.iter.elts if isinstance(node.iter, ast.Tuple) else None
-        if parts is None and isinstance(known, tuple | range):
-            parts = [ast.copy_location(ast.Constant(v), node.iter) for v in known]
         leaves = any(isinstance(n, ast.Break | ast.Continue) for s in node.body for n in ast.walk(s))
         if parts is None or leaves:
             raise self.outside(node, "a loop goes over a range, or over what is written out, to its end")

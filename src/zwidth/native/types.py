@@ -31,13 +31,6 @@ class Nothing:
 
 
 @dataclass(frozen=True)
-class Maybe:
-    """A real number, or None."""
-
-    c = "zw_maybe"
-
-
-@dataclass(frozen=True)
 class Cells:
     """An array, contiguous, of up to four dimensions."""
 
@@ -82,7 +75,7 @@ class Asked:
         return "zw_" + _spelled(self)
 
 
-Type: TypeAlias = "Number | Nothing | Maybe | Cells | Several | Asked"
+Type: TypeAlias = "Number | Nothing | Cells | Several | Asked"
 
 
 def _spelled(of: Type) -> str:
@@ -95,7 +88,7 @@ def _spelled(of: Type) -> str:
         return f"t{len(of.items)}" + "".join(map(_spelled, of.items))
     if isinstance(of, Asked):
         return f"p{len(of.takes)}" + "".join(map(_spelled, (*of.takes, of.returns)))
-    return "n" if isinstance(of, Nothing) else "m"
+    return "n"
 
 
 def joined(a: Type, b: Type) -> Type | None:
@@ -104,12 +97,6 @@ def joined(a: Type, b: Type) -> Type | None:
         return b
     if isinstance(a, Number) and isinstance(b, Number):
         return REAL if REAL in (a, b) else WHOLE
-    if isinstance(a, Several) and isinstance(b, Several) and len(a.items) == len(b.items):
-        if a.names and b.names and a.names != b.names:
-            return None
-        parts = [joined(x, y) for x, y in zip(a.items, b.items, strict=True)]
-        known = tuple(p for p in parts if p is not None)
-        return Several(known, a.names or b.names) if len(known) == len(parts) else None
     return None
 
 
@@ -130,8 +117,6 @@ def annotated(node: ast.expr | None, module: Module) -> Type:
             return annotated(found.node, found.module)
         if isinstance(found, Defined) and isinstance(found.node, ast.ClassDef):
             return fields(found)
-    if isinstance(node, ast.BinOp) and ast.unparse(node) == "float | None":
-        return Maybe()
     if isinstance(node, ast.Subscript):
         of = ast.unparse(node.value)
         inner = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
@@ -167,7 +152,7 @@ def told(of: Type) -> Any:
         return {"several": [told(part) for part in of.items], "class": of.where}
     if isinstance(of, Asked):
         return {"asked": [told(part) for part in (*of.takes, of.returns)]}
-    return "n" if isinstance(of, Nothing) else "m"
+    return "n"
 
 
 class Signature(NamedTuple):
@@ -176,8 +161,6 @@ class Signature(NamedTuple):
     name: str
     takes: tuple[tuple[str, Type], ...]
     returns: Type
-    defaults: dict[str, ast.expr]
-    module: Module
 
     def head(self) -> str:
         takes = ", ".join(f"{taken(of)}{name}_{'at' * is_large(of)}" for name, of in self.takes) or "void"
@@ -206,9 +189,7 @@ def signature_of(of: Defined, name: str) -> Signature:
     takes = tuple((a.arg, annotated(a.annotation, module)) for a in given)
     if _has_cells(returns := annotated(node.returns, module)):
         raise module.outside(node, "a step function fills in an array that it is given, and returns none")
-    named = given[len(given) - len(node.args.defaults) :]
-    defaults = {a.arg: value for a, value in zip(named, node.args.defaults, strict=True)}
-    return Signature(name, takes, returns, defaults, module)
+    return Signature(name, takes, returns)
 
 
 def _has_cells(of: Type) -> bool:
