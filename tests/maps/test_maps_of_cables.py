@@ -78,7 +78,7 @@ def test_a_hand_is_refused():
 
 def test_another_transmission_is_another_map():
     devices = DEVICE, DEVICE.replace(transmission=CABLE.replace(encoder="handle")), DEVICE.motor_side
-    digests = {request(device, *WALLS, (4, 4), None, None).digest() for device in devices}
+    digests = {request(device, *WALLS, (4, 4), None, None).layout.digest for device in devices}
     assert len(digests) == 3
 
 

@@ -117,10 +117,10 @@ def _read(port: Port, x: Fraction) -> Fraction:
     return step * floor(x / step) if step else x
 
 
-def most_taken(
-    leader: Port, follower: Port, schedule: Schedule, samples: int | None = None
-) -> LinkWitness | None:
+def most_taken(leader: Port, follower: Port, schedule: Schedule) -> LinkWitness | None:
     """The motion of those tried that takes most out; None where none takes any.
+
+    Each lasts four times there and back over the link, and 400 samples at least.
 
     Parameters
     ----------
@@ -128,12 +128,10 @@ def most_taken(
         Ports of one sample period; their state plays no part.
     schedule
         What the link does.
-    samples
-        How long each motion is; None: four times there and back, and 400 at least.
     """
     period = leader.device.exact("sample_period")
     there_and_back = 2 * (1 + schedule.samples_late(period) + int(leader.numbers[LATE]))
-    count = max(_SAMPLES, _ROUNDS * there_and_back) if samples is None else samples
+    count = max(_SAMPLES, _ROUNDS * there_and_back)
     times = [schedule.arrivals(count, period, way) for way in (0, 1)]
     best, least = None, 0.0
     for one, other in _hands(leader, there_and_back, schedule.seed, count):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import ceil, isfinite
+from math import ceil
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -23,6 +23,7 @@ from zwidth.links.waves import HeldWaves, NaiveWaves, felt_stiffness
 from zwidth.loop.traces.measures import static_stiffness
 from zwidth.model.device import Device
 from zwidth.model.operator import PrescribedMotion, RecordedForce
+from zwidth.quantity.answered import finite
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
@@ -136,7 +137,10 @@ class LinkComparison(Documented):
         """The scores by port, a unit in every key of a physical quantity."""
         keys = {key: f"{key}_{unit_suffix(about['units'])}" for key, about in self._about().items()}
         ports = {
-            name: {"outcome": row["outcome"], **{keyed: _known(row[key]) for key, keyed in keys.items()}}
+            name: {
+                "outcome": row["outcome"],
+                **{keyed: finite(float(row[key])) for key, keyed in keys.items()},
+            }
             for name, row in self.rows.items()
         }
         held = {"held_back_s": [float(time) for time in self.held_back]} if self.held_back else {}
@@ -152,7 +156,7 @@ class LinkComparison(Documented):
         ]
         rows = []
         for name, row in self.rows.items():
-            numbers = [_known(row[key]) for key in _SCORES]
+            numbers = [finite(float(row[key])) for key in _SCORES]
             cells = [
                 "–" if number is None else f"{factor * number:.3g}"
                 for number, (factor, _) in zip(numbers, told, strict=True)
@@ -179,10 +183,6 @@ _OF_NOTHING = {
     "undecided": "that no hand does is not proved",
 }
 """What is known of a port, by its outcome, where no hand took any energy over the link that was asked."""
-
-
-def _known(value: float) -> float | None:
-    return float(value) if isfinite(value) else None
 
 
 _SCORES = {

@@ -141,7 +141,7 @@ def data_of(result: object) -> dict[str, Any]:
         if one.optional and (value is None or value is False or value in ("", ())):
             continue
         if one.finite:
-            value = _finite(value)
+            value = finite(value)
         if one.stands_as:
             found |= {key: plain(getattr(value, own, None)) for key, own in one.stands_as.items()}
         else:
@@ -172,9 +172,10 @@ def plain(value: Any, names: Sequence[str] = (), motion: str = "") -> Any:
     return str(value) if isinstance(value, PurePath) else value
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
+    """A number, or each of a tuple; None where it is ∞ or nan, which JSON has not."""
     if isinstance(value, tuple):
-        return tuple(map(_finite, value))
+        return tuple(map(finite, value))
     return value if value is None or isfinite(value) else None
 
 

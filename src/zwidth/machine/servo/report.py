@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import isfinite
 from typing import TYPE_CHECKING, cast
 
 from zwidth.machine.servo import cycle
@@ -15,7 +14,7 @@ from zwidth.machine.servo.proving import Measured, claimed
 from zwidth.machine.servo.ring import quantile
 from zwidth.machine.servo.safety import ASKED, BAD_ANSWER, DONE, REASONS, RUNNING
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.answered import answered, rows_of
+from zwidth.quantity.answered import answered, finite, rows_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.text import shown
 from zwidth.showing import Part, Table
@@ -148,15 +147,11 @@ def report_of(
         cut=int(control[cycle.CUT]),
         laws=int(control[cycle.CHANGES]),
         lateness=_quantiles(loop),
-        energy_out=_known(n[cycle.WORK]),
-        friction_loss=_known(n[cycle.LOSS]),
-        least=_known(n[cycle.LEAST]),
+        energy_out=finite(float(n[cycle.WORK])),
+        friction_loss=finite(float(n[cycle.LOSS])),
+        least=finite(float(n[cycle.LEAST])),
         met_hardware=connection.met_hardware,
     )
-
-
-def _known(number: float) -> float | None:
-    return float(number) if isfinite(number) else None
 
 
 def _quantiles(loop: Shared) -> tuple[float, float, float, float]:

@@ -23,7 +23,7 @@ from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope, Torque, Transmission
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
-from zwidth.quantity.answered import answered, answers, known
+from zwidth.quantity.answered import answered, answers, finite, known
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
@@ -291,11 +291,6 @@ def motion_document(motion: ArmMotion | None, turns: int) -> dict[str, Any] | No
         return document
     rotations = {"rotations_rad": motion.positions[:, point:].tolist()}
     return {**document, **rotations, "wall_rest_rotation_rad": motion.rest[point:].tolist()}
-
-
-def finite(value: float) -> float | None:
-    """None of ∞, which JSON has not."""
-    return value if isfinite(value) else None
 
 
 # How much more damping in the joints would do, or how much softer a wall: what is proved, and what fails.

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import ceil, isfinite
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,9 @@ from zwidth.model.operator import PrescribedMotion
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.study.bench.motions import USUAL, as_speed, fixed_motions, speed_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ROUNDS = 150
 """Rounds of each motion at first; more where it gains but has not yet earned what its beginning cost."""
@@ -221,28 +224,24 @@ def _taken(device: Device, environment: Environment, positions: Floats, rounds: 
     path = _listed(positions, rounds)
     period = device.motor_side.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)
-    taken = trace["kinetic_energy"].values - trace["hand_work"].values  # what moves at the end is not lost
+    taken, total = _balance(trace)
     half = max((len(taken) - 1) // len(positions) // 2, 1)  # a motion that diverges ends early
     since = max(len(taken) - 1 - half * len(positions), 0)
+    return _Played(float(taken[-1] - taken[since]) / half, total, rounds)
+
+
+def _balance(trace: xr.Dataset) -> tuple[Floats, float]:
+    """What was taken out up to each sample, and in all, 0 where that is rounding [J]."""
+    taken = trace["kinetic_energy"].values - trace["hand_work"].values  # what moves at the end is not lost
     lost = float(trace["coulomb_loss"][-1] + trace["viscous_loss"][-1])
-    total = float(taken[-1])
-    return _Played(
-        float(taken[-1] - taken[since]) / half, total if abs(total) > ROUNDING * lost else 0.0, rounds
-    )
+    return taken, float(taken[-1]) if abs(taken[-1]) > ROUNDING * lost else 0.0
 
 
 def taken_out(device: Device, law: Environment, positions: Floats, switches: Floats | None) -> float:
     """What a whole motion takes out, from rest to rest, by the simulator [J]."""
-    hand = PrescribedMotion(np.append(positions, positions[-1]), switch_positions=_stay(positions, switches))
-    trace = simulate(device, law, hand, len(positions) * device.exact("sample_period"))
-    lost = float(trace["coulomb_loss"][-1] + trace["viscous_loss"][-1])
-    taken = float(trace["kinetic_energy"][-1] - trace["hand_work"][-1])
-    return taken if abs(taken) > ROUNDING * lost else 0.0
-
-
-def _stay(positions: Floats, switches: Floats | None) -> Floats | None:
-    """The switch positions of a motion that stays for a sample at its end."""
-    return None if switches is None else np.append(switches, positions[-1])
+    stays = None if switches is None else np.append(switches, positions[-1])  # for a sample at its end
+    hand = PrescribedMotion(np.append(positions, positions[-1]), switch_positions=stays)
+    return _balance(simulate(device, law, hand, len(positions) * device.exact("sample_period")))[1]
 
 
 def _listed(positions: Floats, rounds: int) -> Floats:

@@ -14,6 +14,7 @@ from zwidth.model.environment.wall import Wall
 from zwidth.model.operator import Dowel, MaliciousTouch, PrescribedMotion, TypicalTouch
 from zwidth.model.operator.operator import Operator
 from zwidth.passivity.check import check
+from zwidth.quantity.answered import finite
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
@@ -102,7 +103,7 @@ class LawComparison(Documented):
     @property
     def advice(self) -> str:
         """What to do, in a paragraph."""
-        return advice(self.scores, self.device, self.environment)
+        return " ".join([answer(self.scores, self.device, self.environment), *_promises(self.scores)])
 
     def in_short(self, most: int = 6) -> Iterable[Part]:
         """What to do, and the table of a few laws."""
@@ -148,7 +149,7 @@ class LawComparison(Documented):
         scores = self.scores.sel(law=name).drop_vars("status").data_vars.items()
         units = {key: value.attrs["units"] for key, value in scores}
         return {
-            str(key) if units[key] == "1" else f"{key}_{unit_suffix(units[key])}": _finite(float(value))
+            str(key) if units[key] == "1" else f"{key}_{unit_suffix(units[key])}": finite(float(value))
             for key, value in scores
         }
 
@@ -156,10 +157,6 @@ class LawComparison(Documented):
         """Stability against fidelity, and the touches of each law."""
         figure: Figure = above("plots").laws_figure(self)
         return figure
-
-
-def _finite(number: float) -> float | None:
-    return number if isfinite(number) else None
 
 
 _TURNED = {"N/m": ("N*m/rad", 2), "N": ("N*m", 1), "m": ("rad", -1), "N*s/m": ("N*m*s/rad", 2)}
@@ -178,11 +175,6 @@ def _about_axis(scores: xr.Dataset, radius: float) -> xr.Dataset:
 
 QUIET = 0.02
 """Force above 30 Hz below which a wall is called quiet, as part of the largest force."""
-
-
-def advice(scores: xr.Dataset, device: Device, wall: Wall) -> str:
-    """`answer`, and which promises do not hold; the same parameters."""
-    return " ".join([answer(scores, device, wall), *_promises(scores)])
 
 
 def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:

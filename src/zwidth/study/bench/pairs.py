@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -16,6 +15,7 @@ from zwidth.model.environment import Wall
 from zwidth.model.operator import PrescribedMotion, RecordedForce
 from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs import PairCriterion, PairVerdict, check_pair
+from zwidth.quantity.answered import finite
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import shown, unit_text
@@ -66,7 +66,9 @@ class PairComparison(Documented):
             name: {
                 "outcome": verdict.outcome,
                 **{
-                    f"{key}_{unit_suffix(self.scores[key].attrs['units'])}": _plain(self.scores[key], name)
+                    f"{key}_{unit_suffix(self.scores[key].attrs['units'])}": finite(
+                        float(self.scores[key].sel(scheme=name))
+                    )
                     for key in _SCORES
                 },
                 "motion_energy_J": None if verdict.witness is None else verdict.witness.energy,
@@ -91,7 +93,7 @@ class PairComparison(Documented):
 
     def _cells(self, name: str) -> list[str]:
         verdict = self.verdicts[name]
-        numbers = [_plain(self.scores[key], name) for key in _SCORES]
+        numbers = [finite(float(self.scores[key].sel(scheme=name))) for key in _SCORES]
         worst = "nothing"
         if verdict.outcome != "passive":
             witness = verdict.witness
@@ -219,8 +221,3 @@ def _felt(trace: xr.Dataset) -> float:
     speed = np.abs(leader["velocity"].values[-leader.sizes["time"] // 10 :]).max()
     swings = speed > 0.1 * np.abs(leader["velocity"].values).max()
     return float("nan") if swings or "diverged_at_s" in trace.attrs else found
-
-
-def _plain(values: xr.DataArray, name: str) -> float | None:
-    value = float(values.sel(scheme=name))
-    return value if isfinite(value) else None

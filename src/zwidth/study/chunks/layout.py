@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import pickle
 import signal
@@ -11,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, ThreadPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import islice, product
 from queue import SimpleQueue
 from typing import Any
@@ -34,8 +37,7 @@ class Layout:
 
     `what`, `format`: what the arrays are together, in a word for messages; the name and version of how they
         are kept.
-    `digest`, `request`: a name for what was asked, another for whatever has other numbers; the same as JSON
-        holds it.
+    `request`: what was asked, as JSON holds it; another for whatever has other numbers.
     `axes`: the values along each axis, by its name.
     `chunk`: cells along each axis that are computed and kept at a time.
     `types`: the arrays and the type of their numbers.
@@ -44,12 +46,16 @@ class Layout:
 
     what: str
     format: str
-    digest: str
     request: Mapping[str, Any]
     axes: Mapping[str, NDArray[np.float64]]
     chunk: tuple[int, ...]
     types: Mapping[str, str]
     about: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    @cached_property
+    def digest(self) -> str:
+        """A name for the request: another one has another."""
+        return hashlib.sha256(json.dumps(self.request, sort_keys=True).encode()).hexdigest()
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -5,8 +5,6 @@ A cell stands for the wall at its middle, (K, B) = low + (i + ½)(high − low)/
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -91,7 +89,6 @@ class Request:
         return Layout(
             "map",
             FORMAT,
-            self.digest(),
             self.describe(),
             {"stiffness": self.stiffness.values, "virtual_damping": self.virtual_damping.values},
             (CHUNK, CHUNK),
@@ -122,10 +119,6 @@ class Request:
             },
             "chunk": CHUNK,
         }
-
-    def digest(self) -> str:
-        """A name for the request: another one has another."""
-        return hashlib.sha256(json.dumps(self.describe(), sort_keys=True).encode()).hexdigest()
 
 
 def _axis(axis: Axis) -> list[str]:

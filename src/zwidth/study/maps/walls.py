@@ -250,7 +250,7 @@ def z_width_factors(
         name: _levels(name, pair, device.unit(name)) for name, pair in pairs.items()
     }
     levels["filter"] = filters
-    areas: Any = None
+    runs = []
     for run in product((0, 1), repeat=4):
         chosen = {name: levels[name][level] for name, level in zip(FACTORS, run, strict=True)}
         velocity = chosen.pop("filter")
@@ -258,13 +258,8 @@ def z_width_factors(
             device.replace(**chosen), stiffness, virtual_damping, cells,
             velocity_filter=velocity, hands=hands, speed=speed,
         )  # fmt: skip
-        if areas is None:
-            areas, region, unit = (
-                np.zeros((2, 2, 2, 2, found.sizes["region"])),
-                found["region"],
-                found["area"].attrs,
-            )
-        areas[run] = found["area"]
+        runs.append(found["area"])
+    areas, region, unit = np.reshape(runs, (2, 2, 2, 2, -1)), found["region"], found["area"].attrs
     names, effects = _effects(areas)
     return xr.Dataset(
         {"area": ((*FACTORS, "region"), areas, unit), "effect": (("term", "region"), effects, unit)},
@@ -281,14 +276,11 @@ def _levels(name: str, pair: tuple[RealLike, RealLike], unit: str) -> tuple[Exac
 
 
 def _effects(areas: Any) -> tuple[list[str], Any]:
-    sign = np.array([-1.0, 1.0])
+    signs = 2.0 * np.indices((2, 2, 2, 2)) - 1
     names, effects = [], []
     for size in range(1, 5):
         for term in combinations(range(4), size):
-            weights = np.ones((2, 2, 2, 2))
-            for axis in term:
-                weights = weights * sign.reshape([-1 if k == axis else 1 for k in range(4)])
             names.append(" × ".join(FACTORS[axis] for axis in term))
-            signed = (weights[..., None] * areas).reshape(16, -1)
+            signed = (signs[list(term)].prod(axis=0)[..., None] * areas).reshape(16, -1)
             effects.append([fsum(runs) / 8 for runs in signed.T])  # what cancels is 0, not rounding
     return names, np.array(effects)

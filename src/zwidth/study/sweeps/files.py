@@ -78,7 +78,7 @@ def saved_table(path: Path, asked: Request) -> xr.Dataset:
         found, digest = _read_parquet(path)
     except Exception:  # whatever it is, it is not this sweep
         digest = ""
-    if digest != asked.digest():
+    if digest != asked.layout.digest:
         raise InputError(f"{path} exists and holds another sweep, or none; choose another name or remove it")
     return found
 
@@ -97,7 +97,7 @@ def save_table(path: Path, asked: Request, found: xr.Dataset) -> None:
         words = flat.dtype.kind == "U"
         columns[_column(str(name), values)] = pa.array(flat).dictionary_encode() if words else pa.array(flat)
     told = {
-        "digest": asked.digest(),
+        "digest": asked.layout.digest,
         "attributes": found.attrs,
         "axes": {str(name): [str(v) for v in found[name].values.tolist()] for name in found.dims},
         "variables": {str(name): dict(found[name].attrs) for name in found.variables},

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
@@ -17,7 +15,7 @@ from zwidth.errors import InputError
 from zwidth.missing import suggestion
 from zwidth.model.specification.table import quoted
 from zwidth.quantity.exact import Exact, Interval
-from zwidth.study.chunks.layout import Layout, Place, cells
+from zwidth.study.chunks.layout import Layout
 from zwidth.study.sweeps.axes import OF_EVERY_SWEEP, Axis, Columns, axis
 from zwidth.study.sweeps.loops import Loop, Parameter, changed, parameter
 from zwidth.study.sweeps.questions import HANDS, QUESTIONS, Question
@@ -113,7 +111,6 @@ class Request:
         return Layout(
             "sweep",
             FORMAT,
-            self.digest(),
             self.describe(),
             {own.name: own.array for own in self.axes},
             self.chunk,
@@ -126,10 +123,6 @@ class Request:
         values = (own.values[n] for own, n in zip(self.axes, place, strict=True))
         return changed(self.loop, dict(zip(self.parameters, values, strict=True)))
 
-    def cells(self, place: Place) -> tuple[slice, ...]:
-        """The loops of one chunk along each axis."""
-        return cells(place, self.chunk)
-
     def describe(self) -> dict[str, Any]:
         """The request as JSON holds it; exact numbers as text."""
         return {
@@ -138,10 +131,6 @@ class Request:
             "axes": {own.name: [own.unit, *map(repr, own.values)] for own in self.axes},
             "chunk": list(self.chunk),
         }
-
-    def digest(self) -> str:
-        """A name for the request: another one has another."""
-        return hashlib.sha256(json.dumps(self.describe(), sort_keys=True).encode()).hexdigest()
 
 
 def request(of: str, loop: Loop, vary: Mapping[str, object]) -> Request:

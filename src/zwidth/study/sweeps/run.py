@@ -159,7 +159,7 @@ Cell = tuple[tuple[int, ...], tuple[int, ...]]
 
 def compute(asked: Request, place: Place) -> Layers:
     """Every layer of one chunk, by the name of its array."""
-    cells = asked.cells(place)
+    cells = asked.layout.cells(place)
     ranges = [range(*one.indices(len(own.values))) for one, own in zip(cells, asked.axes, strict=True)]
     shape = tuple(map(len, ranges))
     if asked.springs is None:
