@@ -50,6 +50,8 @@ def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
 class PortVerdict(PassivityAnswer):
     """Whether two hands can take energy out of two ports and the link between them.
 
+    It has no `margin`: a ledger gives as much force as was paid for, and no more.
+
     Attributes
     ----------
     port

@@ -35,6 +35,8 @@ ROUNDOFF, SINGLE_ROUNDOFF = Fraction(1, 2**53), Fraction(1, 2**24)
 class Bounding(PassivityAnswer):
     """Whether force bounding at the end of a chain of laws keeps every hand from taking energy out.
 
+    It has no `margin`: the law gives as much force as the device pays for, and no more.
+
     Attributes
     ----------
     outcome

@@ -33,7 +33,7 @@ from zwidth.passivity.pairs.limits import (
 )
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.wording import UNWRITTEN, takes
 from zwidth.quantity.answered import answers, known
@@ -260,11 +260,9 @@ class PairVerdict(PassivityAnswer):
         """Whether without compensation of friction it would be passive, and is not proved so with it."""
         return any(self.pair.compensations) and is_passive(with_share(self.pair, Fraction(0)))
 
-    @property
-    def margin(self) -> float | None:
-        """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
-        largest = self.largest_stiffness
-        return None if largest is None else largest - float(self.pair.felt_stiffness)
+    def _left(self) -> float | None:
+        """Of the largest stiffness of the coupling."""
+        return share_left(float(self.pair.felt_stiffness), self.largest_stiffness)
 
     @property
     @answers()

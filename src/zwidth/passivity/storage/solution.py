@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 class AvailableStorage(PassivityAnswer):
     """The most that a hand can take out of one loop, contact made and broken, the encoder as it is.
 
+    It has no `margin`: one loop is proved, and of those beside it nothing is known; ask `zwidth.limit`.
+
     Attributes
     ----------
     outcome

@@ -26,7 +26,7 @@ from zwidth.passivity.pairs.held.evidence import HeldCertificate, HeldViolation,
 from zwidth.passivity.pairs.held.law import ANY, HeldPair, felt_loop, held_pair
 from zwidth.passivity.pairs.limits import StiffnessAt, grain_of, is_passive, largest_stiffness
 from zwidth.passivity.pairs.verdict import check_pair, has_and_needs
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Hands, Outcome, Scope
 from zwidth.passivity.wording import UNWRITTEN, takes
 from zwidth.quantity.answered import answers, known
@@ -226,11 +226,9 @@ class HeldVerdict(PassivityAnswer):
         need = criterion.required_friction
         return None if need is None else float(need)
 
-    @property
-    def margin(self) -> float | None:
-        """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
-        largest = self.largest_stiffness
-        return None if largest is None else largest - float(self.pair.felt_stiffness)
+    def _left(self) -> float | None:
+        """Of the largest stiffness of the coupling."""
+        return share_left(float(self.pair.felt_stiffness), self.largest_stiffness)
 
     @property
     @answers()
