@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -14,7 +14,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.scope import Outcome, Scope, in_intervals
 from zwidth.passivity.witness.violation import Violation, within_force
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import (
@@ -26,9 +26,8 @@ from zwidth.passivity.wording import (
     lines,
 )
 from zwidth.quantity.answered import known
-from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Parametric, parameters_of
 from zwidth.quantity.text import in_words, shown, shown_at_least
 
 if TYPE_CHECKING:
@@ -175,9 +174,9 @@ def active_at(verdict: Found) -> dict[str, float]:
     """Of the parameters that are intervals the values at which energy was shown to come out, in SI."""
     if verdict.violation is None and verdict.motion is None:
         return {}
-    own = {name: getattr(verdict.device, name, None) for name, *_ in verdict.scope.bounds}
+    own = {name: getattr(verdict.device, name, None) for name in verdict.scope.intervals}
     box = getattr(verdict, "box", None)  # of laws with H(z)
-    law = {} if box is None else dict(_chosen(box[1], verdict.environment))
+    law = {} if box is None else dict(in_intervals(box[1], verdict.environment))
     return {name: float(value) for name, value in {**own, **law}.items() if isinstance(value, Exact)}
 
 
@@ -188,16 +187,6 @@ def where_active(verdict: Found) -> str:
         f"{in_words(name)} {shown(value, GLOSSARY[name].unit_for(motion))}"
         for name, value in active_at(verdict).items()
     )
-
-
-def _chosen(given: Any, at: Any) -> Iterator[tuple[str, Any]]:
-    """By the names of the glossary, what stands in the place of intervals at any depth."""
-    for name, one in parameters_of(type(given)).items():
-        value = getattr(given, name)
-        if isinstance(value, Interval):
-            yield one.quantity.name, getattr(at, name)
-        elif isinstance(value, Parametric):
-            yield from _chosen(value, getattr(at, name))
 
 
 _ROADS = {

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from zwidth.passivity.scope import (
+    OF_THE_LAW,
     Contact,
     Encoder,
     Hands,
@@ -204,8 +205,7 @@ def size(depth: float, speed: float, unit: str) -> str:
 
 
 def _for_any_value(scope: Scope) -> str:
-    of_the_law = {"the environment's intervals": "value of the environment"}
-    names = [of_the_law.get(name, in_words(name)) for name in scope.intervals]
+    names = ["value of the environment" if n == OF_THE_LAW else in_words(n) for n in scope.intervals]
     if not names:
         return ""
     if len(names) == 1:
@@ -278,10 +278,10 @@ def intervals(scope: Scope, outcome: Outcome) -> str | None:
     if not scope.intervals:
         return None
     within = {name: f"{in_words(name)} {_between(name, ends, scope.motion)}" for name, *ends in scope.bounds}
-    values = ", ".join(within.get(name, in_words(name)) for name in scope.intervals)
-    holds = "" if outcome == "undecided" else "holds for every value "
+    values = ", ".join(within.get(name, "each interval of the environment") for name in scope.intervals)
+    holds = "asked" if outcome == "undecided" else "holds"
     numbers = "numbers and motion" if outcome == "active" else "numbers"
-    return f"{holds}within {values}; {numbers} are of the worst corner"
+    return f"{holds} for every value within {values}; {numbers} are of the worst corner"
 
 
 def _between(name: str, ends: Sequence[float], motion: str) -> str:
