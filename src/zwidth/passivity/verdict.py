@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.model.device import Device
-from zwidth.passivity.advice import Advice, in_lines
+from zwidth.passivity.advice import Advice, easiest_first, in_lines
 from zwidth.passivity.outcome_evidence import Found, active_at, assumptions, claim, decided_by
 from zwidth.passivity.result import least, share_left
 from zwidth.quantity.answered import answers
@@ -40,7 +40,11 @@ class Verdict(Found):
     @cached_property
     def claim(self) -> str:
         """The verdict in a sentence or two: what was found, how much, and what to do."""
-        return claim(self, self.advice)
+        return claim(self, self._easiest_first())
+
+    def _easiest_first(self) -> Iterable[Advice]:
+        """The advice, each looked for when it is asked for where that takes long."""
+        return easiest_first(self.advice)
 
     @property
     def assumptions(self) -> tuple[str, ...]:

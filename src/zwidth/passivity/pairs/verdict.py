@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.advice import Advice, with_what_to_do
+from zwidth.passivity.advice import Advice, easiest_first, with_what_to_do
 from zwidth.passivity.pairs.assumed import (
     assumed_of_arms,
     assumed_of_timing,
@@ -177,7 +177,7 @@ class PairVerdict(PassivityAnswer):
     def claim(self) -> str:
         """What was found, how much, and what to do."""
         unwritten = f" {UNWRITTEN}" if self.outcome == "active" and self.witness is None else ""
-        return f"{with_what_to_do(self.found, self.advice, self.outcome)}{unwritten}"
+        return f"{with_what_to_do(self.found, easiest_first(self.advice), self.outcome)}{unwritten}"
 
     @property
     def scope(self) -> Scope:
