@@ -11,6 +11,7 @@ import pytest
 import zwidth as zw
 from zwidth.model.specification.load import load_pair
 from zwidth.model.specification.read import load
+from zwidth.passivity.scope import TOLD
 
 ARMS = """[leader]
 mass = "50 g"
@@ -93,3 +94,23 @@ def test_every_face_says_the_same_sentence(run, name):
     assert escape(claim) in verdict._repr_html_()
     title = " ".join(verdict.figure().get_suptitle().split())
     assert title.endswith(claim)
+
+
+def test_every_kind_of_answer_tells_a_proof_alike(run):
+    """Of a loop, a chain, a pair, a held pair, ports on a link; what is simulated has a word of its own."""
+    paddle, pair = zw.catalogue.device("haptic-paddle"), load_pair(["arms.toml"])
+    chain = zw.render(zw.Wall(770), zw.rendering.ForceBounding())
+    proofs = (
+        zw.check(paddle, zw.Wall(100)),
+        zw.check(paddle, chain),
+        zw.formulas.check_bounding(paddle, chain),
+        zw.check(pair.replace(stiffness=50)),
+        zw.check(pair.replace(stiffness=50), follower=None),
+        zw.links.check(zw.links.WavePort(paddle)),
+    )
+    for proof in proofs:
+        assert proof.passive
+        assert re.match(r"No motion of .+, however fast or skilled, can take energy out of this", proof.claim)
+    badge = run("simulate haptic-paddle --stiffness 770 --operator dowel --duration 1").out.split()[0]
+    assert badge == "GAINED"
+    assert badge.lower() not in TOLD

@@ -35,7 +35,7 @@ SHORT = {
     "limit": (f"limit {PADDLE} 100 --virtual-damping 0.05", "BRACKETED"),
     "pair": ("pair arm.toml --stiffness 100 --link-delay '2 ms'", "PASSIVE"),
     "active pair": ("pair arm.toml --stiffness 300 --link-delay '5 ms'", "ACTIVE"),
-    "simulate": (TOUCH, "ACTIVE"),
+    "simulate": (TOUCH, "GAINED"),
     "compare": (f"compare {PADDLE} 2000 --laws wall,virtual-damping", "wall, 2000 N/m"),
 }
 """Command lines, and with what their first line begins; these are short."""

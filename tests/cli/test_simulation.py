@@ -22,7 +22,7 @@ def test_the_example_of_the_docs_in_a_process_of_its_own(tmp_path):
     words = f"-m zwidth {WALL} --operator dowel --duration 2 --plot touch.png -o touch.nc".split()
     done = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert "ACTIVE" in done.stdout
+    assert "GAINED" in done.stdout
     assert {p.name for p in tmp_path.iterdir()} == {"touch.png", "touch.nc"}
     trace = zw.traces.load_trace(tmp_path / "touch.nc")
     paddle = zw.catalogue.device("haptic-paddle")
@@ -31,7 +31,7 @@ def test_the_example_of_the_docs_in_a_process_of_its_own(tmp_path):
 
 def test_the_report_says_what_came_out(run):
     """An active touch, a quiet one, and one that began inside, each in words."""
-    assert "ACTIVE" in run(DOWEL).out
+    assert "GAINED" in run(DOWEL).out
     assert "got no energy out" in run(f"{DOWEL} --force-limit 0.5").out
     run(f"{DOWEL} --initial-position '20 mm'").says("were stored at the start: nothing was gained")
 

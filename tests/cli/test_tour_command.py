@@ -23,8 +23,8 @@ def test_the_tour_tells_its_story_and_writes_nothing(run, tmp_path, monkeypatch)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("builtins.input", lambda *_: pytest.fail("waits for Enter"))
     said = run("tour").out
-    badges = re.findall(r"^ (PASSIVE|ACTIVE) ", said, re.MULTILINE)
-    assert badges == ["PASSIVE", "ACTIVE", "ACTIVE", "PASSIVE"]
+    badges = re.findall(r"^ (PASSIVE|ACTIVE|GAINED) ", said, re.MULTILINE)
+    assert badges == ["PASSIVE", "ACTIVE", "GAINED", "PASSIVE"]
     for part in ("300 N/m, limited by", "extracts 1.427 mJ", "raise the rate from 1 kHz to 2.567 kHz"):
         assert part in said
     assert max(map(len, said.splitlines())) <= 80
@@ -36,7 +36,7 @@ def test_each_step_shows_what_its_command_finds(run):
     for step in tour.STEPS:
         shown = said.partition(f"$ {step.command}\n")[2].partition("$ ")[0]
         report = run(step.command.removeprefix("zwidth "), None).out
-        if badge := re.search(r"^ (PASSIVE|ACTIVE) ", shown, re.MULTILINE):
+        if badge := re.search(r"^ (PASSIVE|ACTIVE|GAINED) ", shown, re.MULTILINE):
             assert report.startswith(badge.group())
         for number in re.findall(r"[\d.]+ mJ", shown):
             assert number in report

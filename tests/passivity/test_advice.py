@@ -351,3 +351,15 @@ def test_where_the_corners_do_not_decide_the_change_is_one_that_holds_between_th
     assert isinstance(less.to, float)
     assert at_most * 0.99 <= less.to <= at_most
     assert zw.check(wide, zw.Wall(150, less.to), contact=contact).outcome == "passive"
+
+
+def test_a_sentence_looks_for_the_easiest_change_alone() -> None:
+    """Of a large scene every change takes seconds; where none would do, all were looked for, and are kept."""
+    verdict = zw.check(PADDLE, zw.Wall(770))
+    assert verdict.claim.endswith("lower the stiffness from 770 N/m to 300 N/m.")
+    assert "advice" not in vars(verdict)
+    assert verdict.advice[0].text.startswith("raise the rate")
+    none = zw.check(PADDLE.replace(damping=0, coulomb_friction=0), zw.Wall(770))
+    assert ": " not in none.claim
+    kept = vars(none)["advice"]
+    assert kept == zw.check(none.device, none.environment).advice

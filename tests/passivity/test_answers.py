@@ -8,8 +8,9 @@ import pickle
 from collections.abc import Callable, Iterator
 from functools import cache, reduce
 from html import escape
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
+from typing import Any
 
 import control
 import pandas as pd
@@ -17,12 +18,30 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
+from zwidth.data.gains.held_joints import HeldJoint, HeldJoints
+from zwidth.data.gains.verdict import GainsVerdict, JointVerdict
 from zwidth.data.identification.device.estimate import Estimate
+from zwidth.links.verdict import PortVerdict
+from zwidth.passivity.bounding import Bounding
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.passivity.coupling.coupling import CouplingCondition
+from zwidth.passivity.coupling.loop_condition import TransformedCondition
+from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome_evidence import Found
+from zwidth.passivity.pairs import PairVerdict
+from zwidth.passivity.pairs.held import HeldVerdict
 from zwidth.passivity.ports.index import PortAnswer
+from zwidth.passivity.ports.indices import PassivityIndices
+from zwidth.passivity.ports.scattering import ScatteringPassivity
 from zwidth.passivity.result import Answer, PassivityAnswer
+from zwidth.passivity.stability.known_hand import Stability
+from zwidth.passivity.storage.solution import AvailableStorage
+from zwidth.passivity.transmission import TransmissionVerdict
+from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.workspace.null_space import NullSpace
+from zwidth.passivity.workspace.postures import PostureMap
+from zwidth.passivity.workspace.verdict import Workspace
 from zwidth.showing import Html, Shown
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -73,18 +92,109 @@ LOADED = "gains.check_gains gains.check_controllers links.check ports.scattering
 """Beside what is asked above: their classes are loaded with them."""
 
 
-def test_every_class_with_an_outcome_has_claim_and_margin() -> None:
-    """And shows itself in a notebook; of a bracket alone there is no margin, for it is the limit itself."""
+def _with_an_outcome() -> dict[type, set[str]]:
     for name in [*LOADED.split(), "workspace", "null_space", "maps.stiffness_over_postures"]:
         assert reduce(getattr, name.split("."), zw)
     named = {kind: {*dir(kind), *getattr(kind, "__dataclass_fields__", ())} for kind in _kinds(Shown)}
-    found = {
-        kind: names for kind, names in named.items() if "outcome" in names and kind not in (Found, PortAnswer)
-    }
+    return {k: names for k, names in named.items() if "outcome" in names and k not in (Found, PortAnswer)}
+
+
+def test_every_class_with_an_outcome_has_claim_and_margin() -> None:
+    """And shows itself in a notebook."""
+    found = _with_an_outcome()
     assert len(found) >= 15
     for kind, names in found.items():
-        wanted = {"claim", "_repr_html_"} | ({"margin"} if kind is not Bracket else set())
-        assert wanted <= names, kind
+        assert {"claim", "margin", "_repr_html_"} <= names, kind
+
+
+SPRING = zw.Transmission(stiffness="28658.9", handle_damping="0.09", encoder="motor")
+CABLE = zw.Device(mass="0.03", damping="0.06", rate=1000, transmission=SPRING)
+ARMS = zw.Pair(PADDLE.replace(damping="0.5"), PADDLE.replace(damping="0.5"), stiffness=300, delay="1 ms")
+FINGER = zw.arms.PlanarChain(
+    links=(0.1, 0.08, 0.06), damping=(0.05,) * 3, coulomb_friction=(0.01,) * 3,
+    joint_range=((-2, 2), (0, 2.6), (-2, 2.6)),
+)  # fmt: skip
+NULL = {"rate": 1000, "stiffness": 0.5, "rest": (0.2, 1.0, 0.6)}
+
+
+def _pair(share: float, **hands: Any) -> PairVerdict:
+    most = cache(zw.check)(ARMS, **hands).largest_stiffness
+    return zw.check(ARMS.replace(stiffness=most * share), **hands)
+
+
+def _joint(share: float) -> JointVerdict:
+    return JointVerdict(None, None, _pair(share))
+
+
+def _null_space(share: float) -> NullSpace:
+    most = zw.null_space(FINGER, zw.Wall(200), **NULL).covered
+    return zw.null_space(FINGER, zw.Wall(200), within=most * share, **NULL)
+
+
+def _of_factor(found: Callable[[zw.Wall], Any], share: float) -> Any:
+    """Of an answer that says how many times as stiff the wall may be."""
+    return found(zw.Wall(500 * found(zw.Wall(500)).stiffness_factor * share))
+
+
+def _workspace(wall: zw.Wall) -> Workspace:
+    return zw.workspace(ARM, wall, rate=1000)
+
+
+def _postures(wall: zw.Wall) -> PostureMap:
+    arm = zw.arms.read_arm(zw.samples.path("arm.urdf"), whole=True)
+    return zw.stiffness_over_postures(arm, wall, rate=1000, postures=200)
+
+
+def _held(share: float) -> Stability:
+    most = cache(zw.stability.coupled_stability)(HEAVY, zw.Wall(500), HAND).max_stiffness
+    return zw.stability.coupled_stability(HEAVY, zw.Wall(most * share), HAND)
+
+
+ASKS: dict[type, Callable[[float], Any]] = {
+    LinearVerdict: lambda share: zw.check(PADDLE, zw.Wall(300 * share)),
+    Verdict: lambda share: zw.check(PADDLE, zw.NonlinearSpring([0, 0.001], [0, 0.3 * share])),
+    TransmissionVerdict: lambda share: zw.check(
+        CABLE, zw.Wall(zw.check(CABLE, zw.Wall(100)).max_stiffness * share)
+    ),
+    PairVerdict: _pair,
+    HeldVerdict: lambda share: _pair(share, follower=HAND),
+    JointVerdict: _joint,
+    GainsVerdict: lambda share: GainsVerdict(None, (_joint(share), _joint(0.5)), ()),
+    HeldJoints: lambda share: HeldJoints((HeldJoint(None, ASKS[LinearVerdict](share)),), ()),
+    Workspace: lambda share: _of_factor(_workspace, share),
+    PostureMap: lambda share: _of_factor(_postures, share),
+    NullSpace: _null_space,
+    Stability: _held,
+    ScatteringPassivity: lambda share: zw.ports.scattering_passivity(control.tf([share], [1, 1])),
+    CouplingCondition: lambda share: zw.coupling.coupling_condition(PADDLE, 300 * share),
+    TransformedCondition: lambda share: zw.coupling.transformed_condition(
+        PADDLE, zw.coupling.SlopeBounds(0, 300 * share, bounded_below=True)
+    ),
+}
+"""By class, with how much of what it may ask; each in units of the limit."""
+NO_SHARE = {Bounding, AvailableStorage, PassivityIndices, PortVerdict, Bracket}
+NEVER_PROVED = {PostureMap, NullSpace}
+"""Below its limit: of postures no region is, and beyond a region that is proved as asked nothing is known."""
+
+
+@pytest.mark.parametrize("kind", ASKS, ids=lambda kind: kind.__name__)
+def test_a_margin_is_the_share_that_is_left(kind: type) -> None:
+    """0 at the limit, a tenth below it, minus a tenth beyond: of stiffness, damping, gain or distance."""
+    below, beyond = ASKS[kind](0.9), ASKS[kind](1.1)
+    assert type(below) is kind
+    assert below.margin == (None if kind in NEVER_PROVED else pytest.approx(0.1, abs=1e-6))
+    assert beyond.outcome in ("active", "unstable", "undecided")
+    assert beyond.margin == pytest.approx(-0.1, abs=1e-6)
+    if kind not in {Workspace, *NEVER_PROVED}:  # cells are proved with some room
+        assert ASKS[kind](1.0).margin == pytest.approx(0, abs=1e-12)
+
+
+def test_every_class_is_among_those_or_has_no_share() -> None:
+    assert _with_an_outcome().keys() - NO_SHARE == ASKS.keys()
+    device = zw.Device(damping="0.3", sample_period="0.001")
+    for asked, margin in ((0, 1), (150, 0.75), (600, 0), (1200, -1), (zw.Interval(0, 150), 0.75)):
+        assert zw.check(device, zw.Wall(asked)).margin == margin
+    assert zw.check(device.replace(damping=0), zw.Wall(100)).margin == -inf
 
 
 @pytest.mark.parametrize("name", ASKED)
@@ -100,7 +210,7 @@ def test_no_answer_is_true_or_false(name: str) -> None:
     assert isinstance(answer, PassivityAnswer) is (name not in OF_STABILITY)
     if isinstance(answer, PassivityAnswer):
         assert answer.passive is (answer.outcome == "passive")
-    assert (answer.margin is None) is (name in ("bounding", "worst hand"))
+    assert (answer.margin is None) is (type(answer) in NO_SHARE)
     assert answer.margin is None or isfinite(answer.margin)
     assert answer.margin is None or (answer.margin > 0) is (name in YES)
 

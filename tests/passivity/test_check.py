@@ -382,7 +382,11 @@ def test_assumptions_name_what_was_not_given():
     assert "every value within damping" in "\n".join(uncertain.assumptions)
     assert "out of this loop, for any damping within its range: stiffness may go up to" in uncertain.claim
     both = zw.check(PADDLE.replace(damping=(0.2, 0.3)), zw.Wall(zw.Interval(80, 100)))
-    assert "for any damping and value of the environment within their ranges" in both.claim
+    assert "for any damping and stiffness within their ranges" in both.claim
+    assert both.scope.to_dict()["bounds"]["stiffness_N_per_m"] == [80, 100]
+    assert "within damping 0.2 … 0.3 N·s/m, stiffness 80 … 100 N/m; " in both.assumptions[-1]
+    coupled = zw.rendering.VirtualCoupling(zw.Interval(80, 90), 0, zw.Wall(zw.Interval(80, 100)))
+    assert "within each interval of the environment; " in zw.check(PADDLE, coupled).assumptions[-1]
 
 
 def test_rounded_coefficients_are_said():

@@ -112,8 +112,8 @@ def test_bounds_on_hands_are_those_of_a_proof() -> None:
 
 
 def test_intervals_stand_beside_the_loop() -> None:
-    wide = PLAIN.replace(intervals=("damping",))
-    assert "every value within damping" in str(intervals(wide, "passive"))
+    wide = PLAIN.replace(intervals=("damping",), bounds=(("damping", 0.1, 0.2),))
+    assert "every value within damping 0.1 … 0.2 N·s/m" in str(intervals(wide, "passive"))
 
 
 def test_it_is_shorter_than_the_whole() -> None:

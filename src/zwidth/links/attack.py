@@ -18,8 +18,8 @@ from zwidth.links.simulation import End, deliver, law_force, law_send, post, wir
 from zwidth.loop.law import measured
 from zwidth.native.compiled import Array, compiled
 from zwidth.passivity.result import Result
+from zwidth.passivity.wording import takes_once
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -103,8 +103,8 @@ class LinkWitness(Result):
     def describe(self) -> str:
         """In a sentence."""
         period = self.leader.device.exact("sample_period")
-        time = shown(float((self.positions.shape[1] - 1) * period), "s")
-        return f"two hands take {shown(self.energy, 'J')} out in {time}"
+        lasts = float((self.positions.shape[1] - 1) * period)
+        return takes_once("two hands, one on each device,", self.energy, "pair", lasts)
 
 
 def _lost(port: Port, way: Fraction) -> Fraction:

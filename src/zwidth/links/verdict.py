@@ -18,7 +18,7 @@ from zwidth.passivity.bounding import ROUNDOFF
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope, unit_key
-from zwidth.passivity.wording import TRANSMISSION
+from zwidth.passivity.wording import NOT_FOUND, TRANSMISSION, takes_none
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text, quantity_unit
@@ -49,6 +49,8 @@ def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
 @dataclass(frozen=True, repr=False)
 class PortVerdict(PassivityAnswer):
     """Whether two hands can take energy out of two ports and the link between them.
+
+    It has no `margin`: a ledger gives as much force as was paid for, and no more.
 
     Attributes
     ----------
@@ -86,15 +88,15 @@ class PortVerdict(PassivityAnswer):
                 self.port.theorem or "its ledger pays for every force, from what came and what friction took"
             )
             return (
-                "Over a link that delays, loses, repeats or reorders packets as it likes, two hands take no "
-                f"energy out: {why}."
+                f"{takes_none('two hands, one on each device', 'pair')}, over a link that delays, loses, "
+                f"repeats or reorders packets as it likes: {why}."
             )
         if self.witness is not None:
-            return f"Over a link with {self.schedule.describe()}, {self.witness.describe()}."
+            return f"{self.witness.describe()}, over a link with {self.schedule.describe()}."
         slow = slow_actuator(self.port)
         if slow:
             return f"Not proved: a force is taken as instant, and it is not: {slow}."
-        return "Neither a proof nor a motion that takes energy out was found."
+        return f"{NOT_FOUND}."
 
     @property
     def scope(self) -> Scope:

@@ -49,6 +49,11 @@ class Advice:
     text: str
     is_alone: bool = False
 
+    @property
+    def is_at_limit(self) -> bool:
+        """True of slack that is none."""
+        return self.kind == "slack" and self.to == self.current
+
     def to_dict(self) -> dict[str, object]:
         """As plain data: parameter, from, to, unit, kind, text."""
         to = "any" if isinstance(self.to, float) and isinf(self.to) else self.to
@@ -80,11 +85,21 @@ class InLines:
         return (*self.changes, self.at_limit) if self.at_limit else self.changes
 
 
+def easiness(parameter: str) -> int:
+    """The place of a parameter among those that may be turned, the easiest first."""
+    return (*_EASIEST_FIRST, parameter).index(parameter)
+
+
+def easiest_first(advice: Iterable[Advice]) -> list[Advice]:
+    """The same in the order of a report."""
+    return sorted(advice, key=lambda item: easiness(item.parameter))
+
+
 def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     """What to change, or what is left, as a report says it."""
-    ordered = sorted(advice, key=lambda item: (*_EASIEST_FIRST, item.parameter).index(item.parameter))
+    ordered = easiest_first(advice)
     useless = [a for a in ordered if a.to is None and a.current != 0]
-    at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
+    at_limit = [a for a in ordered if a.to is not None and a.is_at_limit]
     none = "no slack" if passive else "no change found that would do alone"
     return InLines(
         "slack" if passive else "what to change, any one of",
@@ -95,8 +110,8 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
 
 
 def with_what_to_do(found: str, advice: Iterable[Advice], outcome: str) -> str:
-    """A sentence of what was found, without its point, and the one change that is easiest, or the slack."""
-    first = next(iter(in_lines(advice, outcome == "passive").changes), "")
+    """A sentence of what was found, without its point, and the first change of `advice`, or the slack."""
+    first = next((a.text for a in advice if a.to is not None and not a.is_at_limit), "")
     if not first:
         return f"{found}."
     return f"{found}. Proved would be: {first}." if outcome == "undecided" else f"{found}: {first}."

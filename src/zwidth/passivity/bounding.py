@@ -23,7 +23,7 @@ from zwidth.model.rendering.rendering_law import LoopContext
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, scope_of, unit_key
-from zwidth.passivity.wording import if_friction_goes_on
+from zwidth.passivity.wording import claim_of_passivity
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
 
@@ -34,6 +34,8 @@ ROUNDOFF, SINGLE_ROUNDOFF = Fraction(1, 2**53), Fraction(1, 2**24)
 @dataclass(frozen=True, repr=False)
 class Bounding(PassivityAnswer):
     """Whether force bounding at the end of a chain of laws keeps every hand from taking energy out.
+
+    It has no `margin`: the law gives as much force as the device pays for, and no more.
 
     Attributes
     ----------
@@ -91,10 +93,7 @@ def check_bounding(device: Device, environment: Environment | Any, *, single: bo
     if rise.ok is False:
         claim = f"Not proved: a force is taken as instant, and it is not: {rise.text}."
         return Bounding("undecided", claim, scope, None)
-    claim = (
-        "No motion of the hand, however fast or skilled, takes energy out of this loop, whatever comes "
-        f"before force bounding{if_friction_goes_on(scope)}: {found.reason}."
-    )
+    claim = f"{claim_of_passivity(scope, False)}, whatever comes before force bounding: {found.reason}."
     return Bounding("passive", claim, scope.replace(contact=found.scope.contact), Certificate((document,)))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -16,7 +16,7 @@ from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit
 from zwidth.passivity.corners import Loop
 from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.formulas.diolaiti import admissible_speed
-from zwidth.passivity.loop_advice import Asked, advise
+from zwidth.passivity.loop_advice import Advised, Asked, advise
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.violation import Violation
@@ -197,6 +197,20 @@ class LinearVerdict(Verdict):
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
+        turning = self._advised()
+        while True:
+            try:
+                next(turning)
+            except StopIteration as end:
+                return end.value  # type: ignore[no-any-return]
+
+    def _easiest_first(self) -> Iterator[Advice]:
+        if "advice" in vars(self):
+            yield from super()._easiest_first()
+        else:
+            vars(self)["advice"] = yield from self._advised()  # where none would do, all were looked for
+
+    def _advised(self) -> Advised:
         at, law = (self.device, self.environment), self.environment
         one_sided = law.unilateral and self.asked != "kept"
         proved = self.outcome == "passive"

@@ -11,7 +11,7 @@ be (behind a part of a sample a wall asks for more than behind a whole one): of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
@@ -32,6 +32,7 @@ from zwidth.passivity.advice import (
     between_delays,
     between_rates,
     between_sizes,
+    easiness,
     outward,
     turn_all,
 )
@@ -171,36 +172,58 @@ class Asked:
         return covered is not None and not (self.contact and covered.contact == "kept")
 
 
-def advise(
-    asked: Asked, passive: bool, or_kept: bool = False, stiffest: Guess = lambda: None
-) -> tuple[Advice, ...]:
+Advised = Generator[Advice, None, tuple[Advice, ...]]
+
+
+def advise(asked: Asked, passive: bool, or_kept: bool, stiffest: Guess) -> Advised:
     """Advice on every parameter of a loop: how far each may go of a `passive` one, else what to change.
 
-    With `or_kept` a proof of hands that keep contact is better than none; `stiffest` is the loop's
+    The easiest first, each looked for when it is asked for; in the end, from the device to the law, all of
+    it.  With `or_kept` a proof of hands that keep contact is better than none; `stiffest` is the loop's
     `max_stiffness`, which is then not looked for twice.
     """
-    found = tuple(_advised(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest))
-    if passive or not (asked.contact and or_kept) or any(advice.to is not None for advice in found):
-        return found
-    return tuple(_advised(replace(asked, contact=False), passive, _KEPT, lambda: None))
+    whole: tuple[Advice, ...] = ()
+    for turns in _rounds(asked, passive, or_kept, stiffest):
+        found: dict[str, list[Advice]] = {parameter: [] for parameter, _ in turns}
+        for parameter, advised in sorted(turns, key=lambda turn: easiness(turn[0])):
+            found[parameter] = [*advised]
+            yield from found[parameter]
+        whole = tuple(advice for turn in found.values() for advice in turn)
+        if any(advice.to is not None for advice in whole):
+            break
+    return whole
 
 
-def _advised(asked: Asked, passive: bool, hands: str, stiffest: Guess) -> Iterator[Advice]:
-    kind: Kind = "slack" if passive else "change"
-    device, law = asked.at
-    is_high = is_of_high_degree(*asked.at)
-    grain = COARSER if is_high else COARSE
-    knobs = (replace(knob, hands=hands) for knob in asked.knobs(stiffest))
-    if is_high:  # to find where a limit is likely takes as long as to find it
-        knobs = (replace(knob, likely=lambda: None) for knob in knobs)
-    for knob in knobs:
-        turns = turn_all([knob], device.motion, kind, grain)
-        if not (passive or all(map(asked.is_confirmed, turns))):  # proved at the corners, and not between
-            turns = turn_all([asked.throughout(knob)], device.motion, kind, COARSER)
-        yield from filter(asked.is_confirmed, turns)
+_Turn = tuple[str, Iterator[Advice]]
+"""A parameter, and what is advised of it, not looked for yet."""
+
+
+def _rounds(asked: Asked, passive: bool, or_kept: bool, stiffest: Guess) -> Iterator[list[_Turn]]:
+    """What may be advised; where nothing of it would do, of hands that keep contact."""
+    yield [*_turns(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest)]
+    if not passive and asked.contact and or_kept:
+        yield [*_turns(replace(asked, contact=False), passive, _KEPT, lambda: None)]
+
+
+def _turns(asked: Asked, passive: bool, hands: str, stiffest: Guess) -> Iterator[_Turn]:
+    law = asked.at[1]
+    for knob in asked.knobs(stiffest):
+        yield knob.parameter, _turned(asked, passive, replace(knob, hands=hands))
     wall = wall_of(law)
     if not passive and wall is not None and wall.damping != 0:
-        yield from _estimators(asked, wall, hands, grain)
+        grain = COARSER if is_of_high_degree(*asked.at) else COARSE
+        yield "velocity_filter", _estimators(asked, wall, hands, grain)
+
+
+def _turned(asked: Asked, passive: bool, knob: Knob) -> Iterator[Advice]:
+    kind: Kind = "slack" if passive else "change"
+    motion, is_high = asked.at[0].motion, is_of_high_degree(*asked.at)
+    if is_high:  # to find where a limit is likely takes as long as to find it
+        knob = replace(knob, likely=lambda: None)
+    turns = turn_all([knob], motion, kind, COARSER if is_high else COARSE)
+    if not (passive or all(map(asked.is_confirmed, turns))):  # proved at the corners, and not between
+        turns = turn_all([asked.throughout(knob)], motion, kind, COARSER)
+    yield from filter(asked.is_confirmed, turns)
 
 
 def turned(loop: Loop, key: str, value: Fraction, sign: int = 1) -> Loop:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
@@ -14,21 +14,22 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.criterion_choice import Decision
 from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.result import PassivityAnswer
-from zwidth.passivity.scope import Outcome, Scope
+from zwidth.passivity.scope import Outcome, Scope, in_intervals
 from zwidth.passivity.witness.violation import Violation, within_force
 from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import (
+    NOT_FOUND,
     UNWRITTEN,
     claim_of_a_motion,
     claim_of_passivity,
     describe_hands,
     intervals,
     lines,
+    takes_any,
 )
 from zwidth.quantity.answered import known
-from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Parametric, parameters_of
 from zwidth.quantity.text import in_words, shown, shown_at_least
 
 if TYPE_CHECKING:
@@ -134,15 +135,16 @@ def claim(verdict: Found, advice: Iterable[Advice] = ()) -> str:
 def _active(verdict: Found, advice: Iterable[Advice]) -> str:
     is_replayed = verdict.scope.transmission == "as given"  # no motion of two bodies is more than that
     if verdict.witness is not None and not is_replayed:
-        return with_what_to_do(f"{_taken(verdict.witness)}{_at(verdict)}", advice, "active")
+        return with_what_to_do(f"{taken(verdict.witness)}{_at(verdict)}", advice, "active")
     assert verdict.violation is not None
-    any_amount = f"A hand can take any amount of energy out of this loop ({verdict.violation.describe()})"
+    any_amount = f"{takes_any('A hand', 'loop')} ({verdict.violation.describe()})"
     return with_what_to_do(f"{any_amount}{_at(verdict)}", advice, "active") + (
         "" if is_replayed else f" {UNWRITTEN}"
     )
 
 
-def _taken(moved: Moves) -> str:
+def taken(moved: Moves) -> str:
+    """What a motion takes out and how long it is, without its point."""
     lasts = moved.motion.samples * moved.sample_period
     return claim_of_a_motion(moved.energy, lasts, moved.depth, moved.peak_speed, moved.unit)
 
@@ -175,9 +177,9 @@ def active_at(verdict: Found) -> dict[str, float]:
     """Of the parameters that are intervals the values at which energy was shown to come out, in SI."""
     if verdict.violation is None and verdict.motion is None:
         return {}
-    own = {name: getattr(verdict.device, name, None) for name, *_ in verdict.scope.bounds}
+    own = {name: getattr(verdict.device, name, None) for name in verdict.scope.intervals}
     box = getattr(verdict, "box", None)  # of laws with H(z)
-    law = {} if box is None else dict(_chosen(box[1], verdict.environment))
+    law = {} if box is None else dict(in_intervals(box[1], verdict.environment))
     return {name: float(value) for name, value in {**own, **law}.items() if isinstance(value, Exact)}
 
 
@@ -188,16 +190,6 @@ def where_active(verdict: Found) -> str:
         f"{in_words(name)} {shown(value, GLOSSARY[name].unit_for(motion))}"
         for name, value in active_at(verdict).items()
     )
-
-
-def _chosen(given: Any, at: Any) -> Iterator[tuple[str, Any]]:
-    """By the names of the glossary, what stands in the place of intervals at any depth."""
-    for name, one in parameters_of(type(given)).items():
-        value = getattr(given, name)
-        if isinstance(value, Interval):
-            yield one.quantity.name, getattr(at, name)
-        elif isinstance(value, Parametric):
-            yield from _chosen(value, getattr(at, name))
 
 
 _ROADS = {
@@ -249,7 +241,7 @@ def _undecided(verdict: Found) -> str:
     if verdict.finding == "depends on values":
         found, moved = verdict.violation or verdict.motion, verdict.witness
         assert found is not None
-        gains = found.describe() if moved is None else _taken(moved).replace("A ", "a ", 1)
+        gains = found.describe() if moved is None else taken(moved).replace("A ", "a ", 1)
         return (
             f"Active for some values of its intervals: at {where_active(verdict)} {gains}. Of other values "
             "in them that is not known."
@@ -275,7 +267,6 @@ def _undecided(verdict: Found) -> str:
 
 def _not_found(verdict: Found) -> str:
     """What is known of a law without H(z)."""
-    found = "Neither a proof for every hand nor a motion that takes energy out was found"
     unit = verdict.device.unit
     lacking = [
         f"{in_words(need.name)} of {shown_at_least(need.needed, unit(need.name))} is proved enough, and "
@@ -283,7 +274,7 @@ def _not_found(verdict: Found) -> str:
         for need in verdict.needs
         if need.has < need.needed
     ]
-    return f"{'; '.join([found, *lacking])}."
+    return f"{'; '.join([NOT_FOUND, *lacking])}."
 
 
 def _open(decision: Decision) -> str:

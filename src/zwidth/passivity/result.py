@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from math import nan
+from math import inf, nan
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from zwidth.checker import EVIDENCE, verify
@@ -23,11 +23,20 @@ def evidence_of(result: object) -> dict[str, Any]:
     return {getattr(part, "_KEY", name): part.saved() for name, part in found.items() if part is not None}
 
 
+def share_left(asked: float | None, most: float | None) -> float | None:
+    """Of the most that is borne the share that is not asked for, 1 − asked/most; None where either is.
+
+    1 where nothing is asked, −∞ where nothing is borne.
+    """
+    if asked is None or most is None:
+        return None
+    return 1.0 if asked <= 0 else 1 - asked / most if most > 0 else -inf
+
+
 def least(margins: Iterable[float | None]) -> float | None:
     """The margin of several answers that all must hold; None where one is not known."""
     found = [*margins]
-    known = [margin for margin in found if margin is not None]
-    return min(known) if known and len(known) == len(found) else None
+    return None if None in found else min((margin for margin in found if margin is not None), default=None)
 
 
 class Result(Documented):
@@ -117,10 +126,16 @@ class Answer(Result):
 
     @property
     def margin(self) -> float | None:
-        """How far the answer is from another one, > 0 on the side of yes; None where no number says it.
+        """1 − asked/most: of the most that is proved, the share that is left; it has no unit.
 
-        Of what it is, and its unit, each class says: what there is less what is needed.
+        ≥ 0 where the outcome is a proof, 0 at its limit, 1 where nothing is asked; else < 0, −1 where twice
+        as much is asked as is proved.  None where the most is not known, or something else decides.
         """
+        left, proved = self._left(), self.outcome not in ("active", "unstable", "undecided")
+        return left if left is not None and (left >= 0) == proved else None
+
+    def _left(self) -> float | None:
+        """`share_left` of what this class asks, and of the most of it that is proved."""
         return None
 
     def __bool__(self) -> bool:

@@ -7,7 +7,7 @@ independent checker found in the proof.  With it stand the outcomes, and proofs 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from types import MappingProxyType
@@ -19,6 +19,7 @@ from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.answered import answered, data_of, known
 from zwidth.quantity.exact import Interval, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.parameter import Parametric, parameters_of
 from zwidth.quantity.text import exact_text
 
 if TYPE_CHECKING:
@@ -165,7 +166,7 @@ class Scope:
         "parameters that stand for every value in an interval", optional=True, default=()
     )
     bounds: tuple[tuple[str, float, float], ...] = known(
-        "the ends of those that are the device's: (parameter, low, high), SI", default=()
+        "the ends of those that have a name of their own: (parameter, low, high), SI", default=()
     )
     assumed: tuple[str, ...] = answered(
         "parameters of the device that were not given and are taken as 0", optional=True, default=()
@@ -218,12 +219,20 @@ def _hands_document(hands: Hands, motion: str) -> dict[str, Any]:
     }
 
 
+OF_THE_LAW = "the environment's intervals"
+"""Stands for those of an environment of which two have one name."""
+
+
 def scope_of(device: Device, environment: Environment) -> Scope:
     """What is asked of a loop, before anything is found: every hand, contact as the law has it."""
     require_rigid(device, "this claim")
     certain = device.is_certain
     friction, damping = ends(device.coulomb_friction)[0], ends(device.damping)[0]
     uncertain = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
+    of_law = [*in_intervals(environment, environment)]
+    if len(both := {**uncertain, **dict(of_law)}) == len(uncertain) + len(of_law):  # no name stands twice
+        uncertain = both
+    is_named = environment.is_certain or (of_law and both is uncertain)
     return Scope(
         contact="made and broken" if environment.unilateral else "both sides",
         encoder="counted" if ends(device.resolution)[1] else "ideal",
@@ -231,12 +240,22 @@ def scope_of(device: Device, environment: Environment) -> Scope:
         coulomb_friction=float(device.exact("coulomb_friction") if certain else friction),
         friction_speed=None if device.friction_speed is None else float(ends(device.friction_speed)[0]),
         clamped=environment.clamped and not environment.spring,
-        intervals=(*uncertain, *(() if environment.is_certain else ("the environment's intervals",))),
+        intervals=(*uncertain, *(() if is_named else (OF_THE_LAW,))),
         bounds=tuple((k, float(v.low), float(v.high)) for k, v in uncertain.items()),
         assumed=device.assumed,
         law=("rounded coefficients",) if environment.coefficients_rounded else (),
         motion=device.motion,
     )
+
+
+def in_intervals(given: Any, at: Any) -> Iterator[tuple[str, Any]]:
+    """By the names of the glossary, what `at` has in the place of each interval of `given`, at any depth."""
+    for name, one in parameters_of(type(given)).items():
+        value = getattr(given, name)
+        if isinstance(value, Interval):
+            yield one.quantity.name, getattr(at, name)
+        elif isinstance(value, Parametric):
+            yield from in_intervals(value, getattr(at, name))
 
 
 def as_contact(value: object) -> Contact:

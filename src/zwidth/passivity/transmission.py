@@ -39,6 +39,7 @@ from zwidth.passivity.linear.transmission import (
     ElasticRefutation,
     decide_elastic,
 )
+from zwidth.passivity.result import share_left
 from zwidth.passivity.scope import Contact, Outcome, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.elastic import ElasticViolation, elastic_document
@@ -135,6 +136,12 @@ class TransmissionVerdict(Verdict):
     def stiffest(self) -> float | None:
         """The largest K that `check` calls passive, of contact as it was asked [N/m; N·m/rad]."""
         return self.max_stiffness
+
+    def _left(self) -> float | None:
+        """Of the largest stiffness that is proved."""
+        if not parameter_limits.has_stiffness(self.environment):
+            return None
+        return share_left(float(ends(parameter_limits.stiffness_of(self.environment))[1]), self.max_stiffness)
 
     @property
     @answers(

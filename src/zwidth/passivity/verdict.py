@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.model.device import Device
-from zwidth.passivity.advice import Advice, in_lines
+from zwidth.passivity.advice import Advice, easiest_first, in_lines
 from zwidth.passivity.outcome_evidence import Found, active_at, assumptions, claim, decided_by
+from zwidth.passivity.result import least, share_left
 from zwidth.quantity.answered import answers
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -40,7 +40,11 @@ class Verdict(Found):
     @cached_property
     def claim(self) -> str:
         """The verdict in a sentence or two: what was found, how much, and what to do."""
-        return claim(self, self.advice)
+        return claim(self, self._easiest_first())
+
+    def _easiest_first(self) -> Iterable[Advice]:
+        """The advice, each looked for when it is asked for where that takes long."""
+        return easiest_first(self.advice)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
@@ -159,16 +163,11 @@ class Verdict(Found):
         """
         return {need.name: need.has - need.needed for need in self.needs}
 
-    @property
-    def margin(self) -> float | None:
-        """Of damping and Coulomb friction the part that could go, (has − needed)/has; of both the lesser.
-
-        < 0 if there is too little; None where a need is not known, or the outcome does not rest on it.
-        """
-        if not self.margins or None in self.margins.values():
-            return None
-        least = min(_part(left, float(self.device.exact(name))) for name, left in self.margins.items())
-        return least if (least >= 0) == self.is_proved else None
+    def _left(self) -> float | None:
+        """Of the device's damping and of its Coulomb friction; of both the lesser."""
+        there = {name: float(self.device.motor_side.exact(name)) for name in self.margins}
+        needs = {name: None if left is None else there[name] - left for name, left in self.margins.items()}
+        return least(share_left(needs[name], has) for name, has in there.items())
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
@@ -185,13 +184,6 @@ class Verdict(Found):
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
-
-
-def _part(left: float | None, has: float) -> float:
-    assert left is not None
-    if has:
-        return left / has
-    return -inf if left < 0 else inf
 
 
 def actuator_demand(device: Device, limit: Exact | Interval, witness: Moves) -> str:

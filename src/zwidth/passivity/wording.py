@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from zwidth.passivity.scope import (
+    OF_THE_LAW,
     Contact,
     Encoder,
     Hands,
@@ -23,7 +24,8 @@ from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
 
-NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
+NOT_FOUND = "Neither a proof nor a motion that takes energy out was found"
+UNWRITTEN = "No motion that shows it was found short enough to be written down."
 
 
 class _Said(NamedTuple):
@@ -165,10 +167,17 @@ def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
             f"{_for_any_value(scope)}{if_friction_goes_on(scope)}"
         )
     more = "; it is exactly at its limit, equality included" if at_limit else ""
-    return f"{NO_MOTION.format(hand=hand)}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}"
+    return f"{takes_none(hand, 'loop')}{_for_any_value(scope)}{if_friction_goes_on(scope)}{more}"
 
 
-UNWRITTEN = "No motion that shows it was found short enough to be written down."
+def takes_none(whose: str, out_of: str) -> str:
+    """That none of whose motions takes energy out of what, without its point."""
+    return f"No motion of {whose}, however fast or skilled, can take energy out of this {out_of}"
+
+
+def takes_any(whose: str, out_of: str) -> str:
+    """That whoever it is can take out more than any bound, without its point."""
+    return f"{whose} can take any amount of energy out of this {out_of}"
 
 
 def claim_of_a_motion(energy: float, seconds: float, depth: float, speed: float, unit: str) -> str:
@@ -180,11 +189,13 @@ def claim_of_a_motion(energy: float, seconds: float, depth: float, speed: float,
 
 
 def takes(whose: str, energy: float, out_of: str, seconds: float) -> str:
-    """Of whose motion, how much it takes out [J], and how long it is [s]."""
-    return (
-        f"A motion of {whose} takes {shown(energy, 'J')} out of this {out_of} in {shown(seconds, 's')}, each "
-        "time it is made"
-    )
+    """Of whose motion, how much it takes out each time [J], and how long it is [s], without its point."""
+    return f"{takes_once(whose, energy, out_of, seconds)}, each time it is made"
+
+
+def takes_once(whose: str, energy: float, out_of: str, seconds: float) -> str:
+    """The same of one that begins at rest."""
+    return f"A motion of {whose} takes {shown(energy, 'J')} out of this {out_of} in {shown(seconds, 's')}"
 
 
 _LARGEST = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
@@ -204,8 +215,7 @@ def size(depth: float, speed: float, unit: str) -> str:
 
 
 def _for_any_value(scope: Scope) -> str:
-    of_the_law = {"the environment's intervals": "value of the environment"}
-    names = [of_the_law.get(name, in_words(name)) for name in scope.intervals]
+    names = ["value of the environment" if n == OF_THE_LAW else in_words(n) for n in scope.intervals]
     if not names:
         return ""
     if len(names) == 1:
@@ -278,7 +288,7 @@ def intervals(scope: Scope, outcome: Outcome) -> str | None:
     if not scope.intervals:
         return None
     within = {name: f"{in_words(name)} {_between(name, ends, scope.motion)}" for name, *ends in scope.bounds}
-    values = ", ".join(within.get(name, in_words(name)) for name in scope.intervals)
+    values = ", ".join(within.get(name, "each interval of the environment") for name in scope.intervals)
     holds = "" if outcome == "undecided" else "holds for every value "
     numbers = "numbers and motion" if outcome == "active" else "numbers"
     return f"{holds}within {values}; {numbers} are of the worst corner"

@@ -468,7 +468,7 @@ def test_an_arm_without_damping_is_active():
 def test_a_verdict_tells_what_is_needed():
     verdict = zw.check(zw.Pair(PADDLE, PADDLE, stiffness=300, delay="1 ms"))
     assert verdict.outcome == "active"
-    assert verdict.margin == pytest.approx(250 - 300, abs=1e-3)
+    assert verdict.margin == pytest.approx(1 - 300 / 250, abs=1e-5)
     assert verdict.required_damping[0] == verdict.required_damping[1] > 0.5
     enough = PADDLE.replace(damping=verdict.required_damping[0] * 1.0001)
     assert zw.check(zw.Pair(enough, PADDLE, stiffness=300, delay="1 ms")).outcome == "passive"

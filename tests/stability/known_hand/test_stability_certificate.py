@@ -82,7 +82,7 @@ def test_slow_hands_are_decided() -> None:
     for stiffness, outcome in (("0.001", "stable"), ("-0.001", "unstable")):
         law = zw.PulseTransferFunction([stiffness], [1])
         found = coupled(device, law, Hand(damping="0.001"))
-        assert 1e-9 < abs(found.margin) < 1e-5
+        assert 1e-9 < abs(1 - found.spectral_radius) < 1e-5
         assert found.outcome == outcome
         assert found.verify()
 

@@ -74,7 +74,7 @@ def trace_headline(trace: AnyTrace) -> Padding:
     if book.active:
         there = f"the {shown(held, 'J')} that" if held else "there"
         words = f"This hand got {got} out of the loop, more than {there} was in it."
-        return headline("active", "red", words)
+        return headline("gained", "red", words)
     if significant and book.unknown:
         words = (
             f"This hand got {got} out. That does not show whether the loop is active: how much it held at "
@@ -183,7 +183,7 @@ def _pair_headline(book: PairLedger) -> Padding:
     got, held = shown(book.got_out, "J"), shown(book.held_at_start, "J")
     if book.active:
         words = f"{got} came out of this pair, more than the {held} that was in it."
-        return headline("active", "red", words)
+        return headline("gained", "red", words)
     if book.got_out > ROUNDING * book.moved:
         words = f"{got} came out, {held} were stored at the start: nothing was gained."
     else:

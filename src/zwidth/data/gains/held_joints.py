@@ -83,7 +83,7 @@ class HeldJoints(Documented):
 
     @property
     def margin(self) -> float | None:
-        """Of the damping of a joint the part that could go, the least of all; as of `Verdict.margin`."""
+        """The least of the joints; None where one is not known."""
         return least(joint.verdict.margin for joint in self.joints)
 
     def saved(self) -> dict[str, Any]:

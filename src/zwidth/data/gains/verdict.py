@@ -98,7 +98,7 @@ class JointVerdict(Shown):
 
     @property
     def margin(self) -> float | None:
-        """As of the pair: how much stiffer the coupling may be [N·m/rad], < 0 where it must be softer."""
+        """As of the pair."""
         return self.verdict.margin
 
     def report(self) -> Iterable[Part]:
@@ -210,7 +210,7 @@ class GainsVerdict(Documented):
 
     @property
     def margin(self) -> float | None:
-        """The least of the joints [N·m/rad]; None where one is not known."""
+        """The least of the joints; None where one is not known."""
         return least(joint.margin for joint in self.joints)
 
     @property

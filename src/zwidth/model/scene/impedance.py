@@ -1,6 +1,6 @@
 """The impedance of a linear scene at its port, exact in its parameters.
 
-    s = (z − 1)/(z + 1)            spring R/s, damper R, mass R s
+    s = (2/T)(z − 1)/(z + 1)       spring K/s, damper B, mass m s
     Z(s) = det Y(s)/det Y_ff(s)    Y the node matrix with the port, Y_ff without
 
 Y is positive real, and so is Z.  s Y is a matrix of polynomials; of its leading minors, which Bareiss's
@@ -22,12 +22,16 @@ _POWER = {1: 0, 0: 1, -1: 2}
 """The power of s that an element has in s Y, by how it reflects."""
 
 
-def impedance(elements: Sequence[Element], net: Ties, period: Fraction) -> RationalFunction:
-    """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever."""
+_ONE = Fraction(2)
+"""The step at which K T/2 of a spring is K, and 2m/T of a mass is m."""
+
+
+def impedance(elements: Sequence[Element], net: Ties) -> RationalFunction:
+    """Z(s) [N·s/m], common factors cancelled; the elements are linear and none is a lever."""
     size = len(net.roots) + 1  # the port last
     y = [[flint.fmpq_poly([0]) for _ in range(size)] for _ in range(size)]
     for element, across in zip(elements, net.across, strict=True):
-        r = element.resistance(period)
+        r = element.resistance(_ONE)
         own = flint.fmpq_poly([0] * _POWER[element.reflection] + [_q(r)])
         weights = [*across.free.items(), *([(size - 1, across.port)] if across.port else [])]
         for i, a in weights:
@@ -36,7 +40,7 @@ def impedance(elements: Sequence[Element], net: Ties, period: Fraction) -> Ratio
     below, above = _minors(y, net.roots)
     top, bottom = above, below * _S  # Z(s) = det(s Y)/(s det(s Y_ff))
     common = top.gcd(bottom)
-    return _in_z(top // common, bottom // common)
+    return _ratio(top // common, bottom // common)
 
 
 def _minors(y: list[list[flint.fmpq_poly]], roots: Sequence[str]) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
@@ -52,10 +56,11 @@ def _minors(y: list[list[flint.fmpq_poly]], roots: Sequence[str]) -> tuple[flint
     return before, y[-1][-1]
 
 
-def _in_z(top: flint.fmpq_poly, bottom: flint.fmpq_poly) -> RationalFunction:
-    """The same in z, s = (z − 1)/(z + 1)."""
+def sampled(z: RationalFunction, period: Fraction) -> RationalFunction:
+    """Z(s) in z, s = (2/T)(z − 1)/(z + 1)."""
+    top, bottom = (_ascending(side) for side in z)
     order = max(top.degree(), bottom.degree())
-    minus, plus = flint.fmpq_poly([-1, 1]), flint.fmpq_poly([1, 1])
+    minus, plus = flint.fmpq_poly([-1, 1]) * _q(2 / period), flint.fmpq_poly([1, 1])
     num, den = (
         sum((p[i] * minus**i * plus ** (order - i) for i in range(p.degree() + 1)), 0 * _S)
         for p in (top, bottom)
@@ -71,10 +76,14 @@ def _ratio(num: flint.fmpq_poly, den: flint.fmpq_poly) -> RationalFunction:
 
 def from_position(z: RationalFunction, period: Fraction) -> RationalFunction:
     """E(z) = Z (z − 1)/(T z) [N/m], of the mean force of the step that ends at a position."""
-    num, den = (flint.fmpq_poly([_q(c) for c in reversed(side)]) for side in z)
+    num, den = (_ascending(side) for side in z)
     num, den = num * flint.fmpq_poly([-1, 1]), den * flint.fmpq_poly([0, _q(period)])
     common = num.gcd(den)
     return _ratio(num // common, den // common)
+
+
+def _ascending(side: Sequence[Fraction]) -> flint.fmpq_poly:
+    return flint.fmpq_poly([_q(c) for c in reversed(side)])
 
 
 def _q(number: Fraction) -> flint.fmpq:

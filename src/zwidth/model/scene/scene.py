@@ -159,6 +159,13 @@ class Scene(Environment, Shown):
         InputError
             If an element is not linear.
         """
+        from zwidth.model.scene.impedance import sampled
+
+        return sampled(self._impedance, sample_period)
+
+    @cached_property
+    def _impedance(self) -> RationalFunction:
+        """Z(s): of a large scene it takes long, and at every step it is the same."""
         if not self.port:
             raise InputError("the scene has no port: name the node that the hand holds, port=…")
         curved = [t for t, e in zip(self.titles, self.elements, strict=True) if e.law is not None]
@@ -169,7 +176,7 @@ class Scene(Environment, Shown):
             )
         from zwidth.model.scene.impedance import impedance
 
-        return impedance(self.joined, self.ties, sample_period)
+        return impedance(self.joined, self.ties)
 
     def stepped(self, sample_period: Fraction, couplings: tuple[CouplingLaw, ...] = ()) -> Stepped:
         """The arrays of the compiled step, the port behind couplings, the hand's first."""

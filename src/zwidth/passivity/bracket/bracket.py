@@ -31,6 +31,7 @@ from zwidth.quantity.text import at_least, at_most, in_words, shown
 class Bracket(Result):
     """The last value of a parameter that is proved passive, and the first that is refuted."""
 
+    margin = None  # it is the limit itself, and asks of no value whether it is proved
     _FORMAT = "zwidth limit 1"
     _PICTURE = "limit_figure"
     _BESIDES = (

@@ -40,7 +40,7 @@ from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, n
 from zwidth.passivity.linear.criterion import LinearRefutation
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome_evidence import Moves
-from zwidth.passivity.result import Answer
+from zwidth.passivity.result import Answer, share_left
 from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.quantity.answered import known
 from zwidth.quantity.exact import Exact, RealLike
@@ -91,11 +91,9 @@ class CouplingCondition(Answer):
             motion=self.device.motion,
         )
 
-    @property
-    def margin(self) -> float | None:
-        """Device damping less what is required [N·s/m; N·m·s/rad]; None if none is enough."""
-        need = self.required_damping
-        return None if need is None else float(self.device.exact("damping") - Fraction(repr(need)))
+    def _left(self) -> float | None:
+        """Of the device's damping."""
+        return share_left(self.required_damping, float(self.device.exact("damping")))
 
     @property
     def certificate(self) -> Certificate | None:

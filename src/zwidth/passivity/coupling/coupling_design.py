@@ -39,7 +39,7 @@ from zwidth.passivity.check import check
 from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
 from zwidth.passivity.formulas.colgate_stanley_brown import needed_damping
 from zwidth.passivity.formulas.hypotheses import number
-from zwidth.passivity.result import Result
+from zwidth.passivity.result import Result, share_left
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answers, known
@@ -96,9 +96,9 @@ class CouplingDesign(Result):
     @answers()
     def margin(self) -> float:
         """The part of the device damping that is left, (b − need)/b."""
-        b, need = self.device.exact("damping"), self.condition.required_damping
-        assert need is not None, "a design has a need"
-        return float((b - Fraction(repr(need))) / b)
+        left = share_left(self.condition.required_damping, float(self.device.exact("damping")))
+        assert left is not None, "a design has a need"
+        return left
 
     def before(self, environment: Environment | Any) -> VirtualCoupling:
         """The coupling with an environment behind it."""

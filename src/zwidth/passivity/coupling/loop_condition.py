@@ -35,7 +35,7 @@ from zwidth.passivity.coupling.loop_forms import (
     largest_need,
 )
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, number, positive
-from zwidth.passivity.result import Answer
+from zwidth.passivity.result import Answer, share_left
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.exact import Exact, RealLike
@@ -74,12 +74,9 @@ class TransformedCondition(Answer):
         """ "theorem": a proof on paper, without a certificate; else "undecided"."""
         return "theorem" if self.holds else "undecided"
 
-    @property
-    def margin(self) -> float | None:
-        """Device damping less what is required [N·s/m; N·m·s/rad]; None if none is enough."""
-        if self.required_damping is None:
-            return None
-        return float(self.device.exact("damping")) - self.required_damping
+    def _left(self) -> float | None:
+        """Of the device's damping."""
+        return share_left(self.required_damping, float(self.device.exact("damping")))
 
     @property
     def scope(self) -> Scope:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from zwidth.model.device import Device
 from zwidth.model.pairs import Pair
-from zwidth.passivity.advice import Advice, with_what_to_do
+from zwidth.passivity.advice import Advice, easiest_first, with_what_to_do
 from zwidth.passivity.pairs.assumed import (
     assumed_of_arms,
     assumed_of_timing,
@@ -33,9 +33,9 @@ from zwidth.passivity.pairs.limits import (
 )
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope
-from zwidth.passivity.wording import UNWRITTEN, takes
+from zwidth.passivity.wording import NOT_FOUND, UNWRITTEN, takes, takes_any, takes_none
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.text import shown, shown_at_least, shown_at_most
 from zwidth.showing import Lines, Part
@@ -44,6 +44,7 @@ _DIGITS = (2, 3, 4, 6, 9, 13)
 """Of what a move inside a sample loses at least, where more make a proof too long."""
 
 
+_HANDS = "two hands, one on each arm"
 NOTHING = "nothing is violated"
 COMPENSATION = "compensation of friction: it gives more than friction is proved to take"
 DRIVE = "damping of an arm: its own drive feeds more energy than it takes"
@@ -165,19 +166,18 @@ class PairVerdict(PassivityAnswer):
     def found(self) -> str:
         """What was found and how much, without its point."""
         if self.outcome == "passive":
-            hands = "No motion of two hands, one on each arm, takes energy out of this pair"
-            return f"{hands}{friction_goes_on(self.pair)}"
+            return f"{takes_none(_HANDS, 'pair')}{friction_goes_on(self.pair)}"
         if self.outcome == "undecided":
-            return "Neither a proof nor a motion that takes energy out was found"
+            return NOT_FOUND
         if self.witness is None:
-            return "Two hands, one on each arm, can take any amount of energy out of this pair"
-        return takes("two hands, one on each arm,", self.witness.energy, "pair", self.witness.duration)
+            return takes_any(_HANDS.capitalize(), "pair")
+        return takes(f"{_HANDS},", self.witness.energy, "pair", self.witness.duration)
 
     @cached_property
     def claim(self) -> str:
         """What was found, how much, and what to do."""
         unwritten = f" {UNWRITTEN}" if self.outcome == "active" and self.witness is None else ""
-        return f"{with_what_to_do(self.found, self.advice, self.outcome)}{unwritten}"
+        return f"{with_what_to_do(self.found, easiest_first(self.advice), self.outcome)}{unwritten}"
 
     @property
     def scope(self) -> Scope:
@@ -260,11 +260,9 @@ class PairVerdict(PassivityAnswer):
         """Whether without compensation of friction it would be passive, and is not proved so with it."""
         return any(self.pair.compensations) and is_passive(with_share(self.pair, Fraction(0)))
 
-    @property
-    def margin(self) -> float | None:
-        """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
-        largest = self.largest_stiffness
-        return None if largest is None else largest - float(self.pair.felt_stiffness)
+    def _left(self) -> float | None:
+        """Of the largest stiffness of the coupling."""
+        return share_left(float(self.pair.felt_stiffness), self.largest_stiffness)
 
     @property
     @answers()

@@ -32,6 +32,7 @@ from zwidth.passivity.ports.port import Port, in_lowest_terms, typed_at_most
 from zwidth.passivity.ports.positive_real import in_words
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
 from zwidth.passivity.ports.scattering import RelativeIndex, relative_index
+from zwidth.passivity.result import share_left
 from zwidth.passivity.scope import Scope, unit_key
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq
@@ -41,7 +42,10 @@ from zwidth.quantity.text import told_quantity
 
 @dataclass(frozen=True, repr=False)
 class PassivityIndices(PortAnswer):
-    """What `passivity_indices` found."""
+    """What `passivity_indices` found.
+
+    It has no `margin`: no factor on a system changes whether it is passive.  ν is `input.value`.
+    """
 
     _FORMAT = "zwidth indices 1"
     _PICTURE = "indices"
@@ -70,11 +74,6 @@ class PassivityIndices(PortAnswer):
     def assumptions(self) -> tuple[str, ...]:
         """Nothing but a sample period that nobody says: a port by itself has neither hand nor actuator."""
         return self.assumed
-
-    @property
-    def margin(self) -> float:
-        """ν, in the unit of output over input."""
-        return self.input.value
 
     def relative(self, reference: RealLike = 1) -> RelativeIndex:
         """How much of a wave comes back at most, R; the port is passive if and only if R ≤ 1.
@@ -176,8 +175,8 @@ class SampledDamping:
 
     @property
     def margin(self) -> float | None:
-        """b − required of the device [N·s/m; N·m·s/rad]; None if none is enough."""
-        return None if self.required is None else float(self.device.exact("damping")) - self.required
+        """As of an `Answer`, of the device's damping; None if none is enough."""
+        return share_left(self.required, float(self.device.exact("damping")))
 
     def describe(self) -> str:
         """The need in a line."""

@@ -28,6 +28,7 @@ from zwidth.passivity.ports.largest import largest_level
 from zwidth.passivity.ports.port import Polynomials, Port, as_polynomials, leverrier, typed_at_most
 from zwidth.passivity.ports.positive_real import OFFSET, Band, bands, in_words, is_stable, prove_level
 from zwidth.passivity.ports.reading import assumed_period, from_polynomials, read_port
+from zwidth.passivity.result import share_left
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
@@ -63,10 +64,9 @@ class ScatteringPassivity(PortAnswer):
         """‖S‖∞: how much of a wave comes back, at most."""
         return relative_index(self.input.port)
 
-    @property
-    def margin(self) -> float:
+    def _left(self) -> float | None:
         """1 − ‖S‖∞."""
-        return 1 - self.gain.value
+        return share_left(self.gain.value, 1)
 
     def waves(self, points: int = 1000) -> tuple[list[float], list[list[float]], list[list[float]]] | None:
         """(t [s], a, b) of the witness, a signal for each port; None where there is no witness."""

@@ -22,7 +22,7 @@ from zwidth.model.environment.transfer_function import as_environment
 from zwidth.model.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.linear.boundary import largest_holding
-from zwidth.passivity.result import Answer
+from zwidth.passivity.result import Answer, share_left
 from zwidth.passivity.scope import Hands, Scope, scope_of, unit_key
 from zwidth.passivity.stability.characteristic import (
     PRECISIONS,
@@ -73,6 +73,7 @@ class Stability(Answer):
         "with which the loop oscillates at that stiffness, for intervals at their worst corner", unit="Hz"
     )
     scope: Scope = known("what it is about: which hand, contact, what is left out")
+    stiffness: float | None = known("K of the wall; None of a law that is none", quantity="stiffness")
     unstable_hand: tuple[float, float, float] | None = known(
         "mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay",
         default=None,
@@ -88,10 +89,9 @@ class Stability(Answer):
         """True where the outcome is "stable": proved for the hand and the wall that were given."""
         return self.outcome == "stable"
 
-    @property
-    def margin(self) -> float:
-        """1 − spectral radius: > 0 for a loop that decays."""
-        return 1 - self.spectral_radius
+    def _left(self) -> float | None:
+        """Of the largest stable stiffness of a wall."""
+        return share_left(self.stiffness, self.max_stiffness)
 
     def __repr__(self) -> str:
         limit = "" if self.max_stiffness is None else f", stiffest {self.max_stiffness:.6g}"
@@ -145,6 +145,7 @@ def coupled_stability(device: Device, wall: Environment | Any, hand: Any = None)
     found, certificate = _checked(motion, transfer, device.motion)
     worst = max((_poles(corner, transfer) for corner in motion.grid(2)), key=lambda z: abs(z))
     largest, limit = largest_stable(motion, law, device.motion)
+    spring = law.damped_spring(motion.period)
     return Stability(
         outcome=found.outcome,
         claim=_claim(found),
@@ -153,6 +154,7 @@ def coupled_stability(device: Device, wall: Environment | Any, hand: Any = None)
         max_stiffness=largest,
         limit_frequency=None if limit is None else _hertz(limit, motion),
         scope=_scope(device, holding, law),
+        stiffness=None if spring is None else float(spring.stiffness),
         unstable_hand=_unstable_hand(found),
         certificate=certificate,
     )

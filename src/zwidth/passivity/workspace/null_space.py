@@ -27,7 +27,7 @@ from zwidth.model.arms.null_space import Loop, NullSpaceSpring, fast_motion, mov
 from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.certificate import largest_certified, needed_at_rest, null_space_certificate
 from zwidth.passivity.workspace.question import Question, asked_of
@@ -197,10 +197,9 @@ class NullSpace(PassivityAnswer):
             return f"the spring's want of a potential up to {far} from the rest, proved"
         return f"nothing: {self.why_not_more}"
 
-    @property
-    def margin(self) -> float | None:
-        """How much less far than asked a proof goes, < 0 [rad]; None where it goes as far."""
-        return None if self.within is None or self.certificate else self.covered - self.within
+    def _left(self) -> float | None:
+        """Of the distance from the rest that is proved; beyond one proved as asked it is not known."""
+        return None if self.certificate else share_left(self.within, self.covered)
 
     def numbers(self) -> dict[str, Any]:
         """As plain data, units in the keys."""

@@ -26,7 +26,7 @@ from zwidth.model.arms.joints import largest_scale, surplus
 from zwidth.model.arms.replay import refuting_motion
 from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
 from zwidth.passivity.workspace.question import Question, asked_of
@@ -133,10 +133,9 @@ class PostureMap(PassivityAnswer):
             transmission=between(self.question.arm),
         )
 
-    @property
-    def margin(self) -> float:
-        """By how many times the wall may be stiffer, less 1."""
-        return self.stiffness_factor - 1
+    def _left(self) -> float | None:
+        """Of the stiffest wall at every posture tried, which no region is proved from."""
+        return share_left(1, self.stiffness_factor)
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

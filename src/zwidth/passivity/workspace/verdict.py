@@ -19,7 +19,7 @@ from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope, Torque, Transmission
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.question import Question
@@ -199,13 +199,9 @@ class Workspace(PassivityAnswer):
             stiffest = shown(self.largest_stiffness, "N/m", 6)
         return f"<Workspace {self.outcome}: {self.claim} Stiffest wall at every point: {stiffest}>"
 
-    @property
-    def margin(self) -> float:
-        """What the joints have of damping over what is needed, at the worst place and in the worst direction.
-
-        At the hand [N·s/m]; of a wall in pose, which has two units, in the joints [N·m·s/rad].
-        """
-        return float(self.data["margin" if "margin" in self.data else "margin_in_joints"].min())
+    def _left(self) -> float | None:
+        """Of the stiffest wall that holds at every point."""
+        return share_left(1, self.stiffness_factor)
 
     def evidence(self) -> dict[str, Any]:
         """The proof as plain data; None where there is none."""
@@ -221,7 +217,7 @@ class Workspace(PassivityAnswer):
             "wall": wall_document(self.wall, self.coordinates, turns),
             "largest_forces_N": list(self.largest_forces[:1]),
             "largest_moments_N_m": list(self.largest_forces[1:]),
-            "smallest_margin_N_s_per_m": self.margin if "margin" in data else None,
+            "smallest_margin_N_s_per_m": float(data["margin"].min()) if "margin" in data else None,
             "smallest_margin_in_joints_N_m_s_per_rad": float(data["margin_in_joints"].min()),
             "encoder_steps": None if steps is None else steps_document(steps, turns),
             "too_little": {

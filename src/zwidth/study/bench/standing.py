@@ -27,7 +27,7 @@ from zwidth.model.rendering.rendering_law import LoopContext, half_a_step
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.covering_wall import covering
-from zwidth.passivity.outcome_evidence import claim
+from zwidth.passivity.outcome_evidence import claim, taken
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.chain_program import COUNTS, ChainProgram, chain_program
@@ -293,7 +293,7 @@ def _of_a_row(device: Device, law: Environment) -> tuple[bool, str]:
     told = Budget(MOVES // (program.table.states * width * NODES**2))
     for outcome in _rounds(program, told):
         if isinstance(outcome, Gain):
-            return True, f"A motion of the hand takes energy out of this loop: {outcome.describe()}."
+            return True, f"{taken(outcome)}."
         if outcome:
             return False, _proved(program)
     return False, "nor does value iteration decide it"

@@ -76,7 +76,7 @@ def test_what_binds():
         device("0.1"), zw.coupling.SlopeBounds(0, 500, bounded_below=True)
     )
     assert (short.holds, short.binding) == (False, "device damping")
-    assert short.margin == pytest.approx(-0.15)
+    assert short.margin == pytest.approx(-1.5)
     lacking = zw.coupling.transformed_condition(
         device(100), zw.coupling.PassivityExcess(0, "-0.05"), 290, "0.07"
     )

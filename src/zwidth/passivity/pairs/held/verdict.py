@@ -26,9 +26,9 @@ from zwidth.passivity.pairs.held.evidence import HeldCertificate, HeldViolation,
 from zwidth.passivity.pairs.held.law import ANY, HeldPair, felt_loop, held_pair
 from zwidth.passivity.pairs.limits import StiffnessAt, grain_of, is_passive, largest_stiffness
 from zwidth.passivity.pairs.verdict import check_pair, has_and_needs
-from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Hands, Outcome, Scope
-from zwidth.passivity.wording import UNWRITTEN, takes
+from zwidth.passivity.wording import NOT_FOUND, UNWRITTEN, takes, takes_any, takes_none
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown, shown_at_most
@@ -130,17 +130,16 @@ class HeldVerdict(PassivityAnswer):
         free = self.question.free
         if self.outcome == "passive":
             goes_on = friction_goes_on(self.pair)
-            return f"No motion of the {free}'s hand takes energy out of this pair {self._while}{goes_on}."
+            return f"{takes_none(f'a hand on the {free}', 'pair')} {self._while}{goes_on}."
         if self.outcome == "active":
             hand = "this hand" if self.question.motion.is_certain else "one of these hands"
             by = "nobody" if self.question.hand.is_nobody else hand
             held = f"while {by} holds the {self.question.held}"
             if self.witness is None:
-                can = f"A hand on the {free} can take any amount of energy out of this pair"
-                return f"{can}, {held}. {UNWRITTEN}"
+                return f"{takes_any(f'A hand on the {free}', 'pair')}, {held}. {UNWRITTEN}"
             taken = takes(f"a hand on the {free}", self.witness.energy, "pair", self.witness.duration)
             return f"{taken}, {held}."
-        return f"Neither a proof nor a motion of the {free} that takes energy out was found."
+        return f"{NOT_FOUND}."
 
     @property
     def _hand(self) -> str:
@@ -226,11 +225,9 @@ class HeldVerdict(PassivityAnswer):
         need = criterion.required_friction
         return None if need is None else float(need)
 
-    @property
-    def margin(self) -> float | None:
-        """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
-        largest = self.largest_stiffness
-        return None if largest is None else largest - float(self.pair.felt_stiffness)
+    def _left(self) -> float | None:
+        """Of the largest stiffness of the coupling."""
+        return share_left(float(self.pair.felt_stiffness), self.largest_stiffness)
 
     @property
     @answers()
