@@ -87,6 +87,7 @@ def test_from_a_file_it_is_that_file_and_where_it_is_gone_the_libraries(typed, t
     wheel = tmp_path / "zwidth-0.1.0-py3-none-any.whl"
     told = {"url": wheel.as_uri(), "archive_info": {}}
     assert typed(told, "maps") == ["dask[distributed]>=2024"]
+    assert typed(told, "serve,maps") == ["bokeh>=3.5", "dask[distributed]>=2024"]
     wheel.touch()
     assert typed(told, "maps") == [f"zwidth[maps] @ {wheel.as_uri()}"]
 

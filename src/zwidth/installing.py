@@ -58,7 +58,10 @@ def _zwidth(extra: str) -> list[str]:
     named, libraries = f"[{extra}]" if extra else "", list[str]()
     try:
         found = distribution("zwidth")
-        libraries = [one.partition(";")[0] for one in found.requires or () if f"extra == '{extra}'" in one]
+        marks = [f"extra == '{name}'" for name in extra.split(",")]
+        libraries = [
+            one.partition(";")[0] for one in found.requires or () if any(mark in one for mark in marks)
+        ]
         told: dict[str, Any] = json.loads(found.read_text("direct_url.json") or "{}")
     except PackageNotFoundError:  # the source is on PYTHONPATH
         told = {"url": Path(__file__).resolve().parents[2].as_uri(), "dir_info": {}}
