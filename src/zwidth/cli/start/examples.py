@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from pathlib import Path
 from textwrap import fill, indent
 
@@ -11,6 +10,7 @@ from zwidth.cli.output import check_new, quiet_pipe
 from zwidth.errors import InputError
 from zwidth.model import samples
 from zwidth.model.specification.table import plain
+from zwidth.showing import typed
 from zwidth.writing import writing_whole
 
 OPTIONS = (
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     copy_to(folder, arguments.force)
     with quiet_pipe():
         print(f"written: {len(samples.names())} files in {plain(str(folder), 100)}")
-        print("next:" if folder == Path() else f"next:\n  cd {shlex.quote(str(folder))}")
+        print("next:" if folder == Path() else f"next:\n  cd {typed(str(folder))}")
         print(f"  {samples.EXAMPLES[0].command}")
     return 0
 

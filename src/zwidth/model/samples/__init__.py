@@ -54,7 +54,7 @@ EXAMPLES = (
     Example(
         ("hapkit.toml",),
         "a Hapkit and its wall, as C for the board",
-        "zwidth emit hapkit.toml --target arduino --travel '-60 .. 60 mm' -o hapkit",
+        'zwidth emit hapkit.toml --target arduino --travel "-60 .. 60 mm" -o hapkit',
     ),
     Example(
         ("arm.urdf",),
