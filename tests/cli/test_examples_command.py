@@ -125,6 +125,17 @@ SAID = {
         "280 N/m: undecided",
         "400 N/m: active",
     ),
+    "lesson-answers.ipynb": (
+        "2000 Hz: 600 N/m, 0.2 ms late 312 N/m",
+        "0.1 kg: 300.0 N/m, 0.00 mJ came out",
+        "'50.0 mm', '0.0 mm'] 12.97 mJ",
+        "0.7 mm: sampling against viscous damping, up to 300.0 N/m",
+        "0.9 mm: quantization against Coulomb friction, up to 266.7 N/m",
+        "Active for some values of its intervals: at damping 0.1304 N·s/m",
+        "B = 0.075 N·s/m: 150.0 N/m",
+        "PassivityController undecided\nForceBounding passive",
+        "this is not emitted, it is active",
+    ),
     "lesson-3-laws.ipynb": ("with controller: 0.00 mJ came out", "undecided"),
 }
 """What the text between the cells relies on."""

@@ -88,8 +88,8 @@ EXAMPLES = (
         "zwidth check firmware/device.toml firmware/walls/bump-stop.toml",
     ),
     Example(
-        ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb"),
-        "three lessons for a class; the package jupyterlab opens them",
+        ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb", "lesson-answers.ipynb"),
+        "three lessons for a class, and their answers; the package jupyterlab opens them",
         "jupyter lab lesson-1-sampling.ipynb",
     ),
 )
