@@ -25,7 +25,7 @@ def record(path: Path) -> None:
     paddle = zw.catalogue.device("haptic-paddle")
     time = 1e-3 * np.arange(SAMPLES + 1)
     waves = zip(rng.normal(size=12), rng.uniform(0.3, 4, 12), rng.uniform(0, 6.28, 12), strict=True)
-    hand = sum(a * np.sin(2 * np.pi * f * time + p) for a, f, p in waves)
+    hand = np.sum([a * np.sin(2 * np.pi * f * time + p) for a, f, p in waves], axis=0)
     hand = hand * 0.02 / hand.std() - 1  # the wall is a metre away
     operator = zw.operators.Tracking(hand, stiffness=300, damping=0)
     trace = zw.simulate(paddle, zw.Wall(1), operator, SAMPLES / 1000, initial_position=hand[0])

@@ -34,7 +34,7 @@ wanted = np.where(inwards[:, None], soft, stiff)
 # the hand is inside, with what has been dissipated; outside, where nothing is stored, it is free.
 
 
-def naive(solids):
+def naive(solids: np.ndarray) -> np.ndarray:
     """μ0 u + μ1 e, e ← a (e + Δu), with the numbers of the moment."""
     e = before = 0.0
     forces = []
@@ -46,7 +46,7 @@ def naive(solids):
     return np.array(forces)
 
 
-def put_in(forces):
+def put_in(forces: np.ndarray) -> np.ndarray:
     """What hand and damping have put in: Σ f Δx + (b/T) Δx² [J]; below 0 the hand has got energy out."""
     moved = np.diff(position)
     return np.append(0.0, np.cumsum(forces[:-1] * moved + b / T * moved**2))

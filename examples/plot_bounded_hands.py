@@ -18,7 +18,9 @@ from fractions import Fraction
 import matplotlib.pyplot as plt
 
 import zwidth as zw
+from zwidth.passivity.bracket import Bracket
 from zwidth.passivity.formulas.abbott_okamura import abbott_okamura_stiffness
+from zwidth.passivity.storage.gain import Gain
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
@@ -29,15 +31,22 @@ b, friction, count, period = (
 sampling, encoder = (float(k) for k in abbott_okamura_stiffness(b, friction, count, period))
 
 
-def formula(speed):
+def formula(speed: Fraction) -> float:
     """Largest stiffness that is proved for hands up to a speed, at any depth [N/m]."""
     return float(min((2 * friction + 2 * b * speed) / (count + speed * period), 2 * friction / count))
 
 
-def bracket(depth, counts):
+def bracket(depth: str, counts: int) -> Bracket:
     """The bracket for hands of so much depth [m] that move so many counts in a sample."""
     start = zw.Wall(stiffness=formula(counts * count / period))
     return zw.limit(paddle, start, penetration=depth, speed=counts * count / period)
+
+
+def ends(found: Bracket) -> tuple[float, float]:
+    """What is proved passive, and active: both are found for these hands [N/m]."""
+    assert found.proved_passive
+    assert found.proved_active
+    return found.proved_passive, found.proved_active
 
 
 # %%
@@ -52,6 +61,7 @@ DEPTHS = {
 counts = (1, 2, 4, 8, 23, 45, 134)
 brackets = {(depth, n): bracket(depth, n) for depth in DEPTHS for n in counts}
 winner = brackets["0.0002", 4]
+assert isinstance(winner.witness, Gain)
 
 # %%
 # At 10 mm the brackets hold the formula, which is then the limit itself.  Where a hand could cross all of
@@ -70,9 +80,9 @@ figure, axes = plt.subplot_mosaic(
 left = axes["limit"]
 for (depth, n), found in brackets.items():
     marker, colour = DEPTHS[depth]
-    speed, ends = float(n * count / period), (found.proved_passive, found.proved_active)
-    left.plot([speed, speed], ends, color=colour, lw=1.2)
-    left.plot(speed, sum(ends) / 2, marker, color=colour, mfc="white", ms=5.5)
+    speed = float(n * count / period)
+    left.plot([speed, speed], ends(found), color=colour, lw=1.2)
+    left.plot(speed, sum(ends(found)) / 2, marker, color=colour, mfc="white", ms=5.5)
 for depth, (marker, colour) in DEPTHS.items():
     text = f"value iteration: up to {1000 * float(depth):g} mm deep"
     left.plot([], [], marker, color=colour, mfc="white", label=text)
@@ -107,17 +117,15 @@ for name in ("position", "force"):
 print(f"every hand: {sampling:g} N/m; hands that creep: {encoder:.0f} N/m")
 for n in counts:
     v = n * count / period
-    found = [brackets[depth, n] for depth in ("0.0005", "0.01")]
-    values = "; ".join(
-        f"{bracket.proved_passive:.0f} to {bracket.proved_active:.0f} N/m" for bracket in found
-    )
+    both = [ends(brackets[depth, n]) for depth in ("0.0005", "0.01")]
+    values = "; ".join(f"{low:.0f} to {high:.0f} N/m" for low, high in both)
     print(
         f"hands up to {float(v):.3f} m/s: {formula(v):.0f} N/m by the formula; 0.5 mm, 10 mm deep: {values}"
     )
-deep = [(formula(n * count / period), bracket) for (depth, n), bracket in brackets.items() if depth == "0.01"]
-hold = sum(bracket.proved_passive <= limit <= bracket.proved_active for limit, bracket in deep)
+deep = [(formula(n * count / period), *ends(brackets["0.01", n])) for n in counts]
+hold = sum(low <= limit <= high for limit, low, high in deep)
 print(f"10 mm deep: {hold} of {len(deep)} brackets hold the formula")
-print(f"just above the limit, at {winner.proved_active:.0f} N/m: {winner.witness.describe()}")
+print(f"just above the limit, at {ends(winner)[1]:.0f} N/m: {winner.witness.describe()}")
 print(f"admissible speed at 770 N/m: {zw.check(paddle, zw.Wall(stiffness=770)).admissible_speed:.3f} m/s")
 half = Fraction(1, 2)
 print(f"every hand: {sampling:g} N/m; hands up to {float(half):g} m/s: {formula(half):.0f} N/m")

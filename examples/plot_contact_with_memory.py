@@ -21,19 +21,23 @@ import contextlib
 import io
 import itertools
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Rectangle
 
 import zwidth as zw
 from zwidth.cli.main import main as command_line
+from zwidth.model.environment.velocity import VelocityEstimator
 from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.parameter_limits import required_damping
 from zwidth.passivity.storage.domain import Domain, domain_for, losses_of
-from zwidth.passivity.storage.gain import gain
+from zwidth.passivity.storage.gain import Gain, gain
 from zwidth.passivity.storage.grid import Grid
 from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.storage.program import DynamicProgram
@@ -44,23 +48,27 @@ plt.rcParams.update(plots.LOOK)
 RED, GREEN, BLUE, GREY = "#D55E00", "#009E73", "#0072B2", "#777777"
 COLOURS = {"proved": GREEN, "refuted": RED, "undecided": "#CCCCCC"}
 STIFFNESS, DAMPING, COUNTS, REACH = 1, 10, 12, 8
-verified: list = []
+verified: list[bool] = []
+
+Memory = zw.Wall | zw.Maxwell
+Number = Fraction | str
+Progress = Callable[[int], None]
 
 
-def wall(estimate):
+def wall(estimate: VelocityEstimator) -> zw.Wall:
     """Only ratios count: T = 1 and Δ = 1, B = 10 KT."""
     return zw.Wall(STIFFNESS, damping=DAMPING, velocity_filter=estimate)
 
 
-def needs(environment):
+def needs(environment: Memory) -> tuple[Fraction, Fraction]:
     """What sustained contact asks for: b of the linear criterion, f_c = ‖h‖₁ Δ/2."""
     ideal = zw.Device(damping=100, coulomb_friction=0, resolution=0, sample_period=1, delay=0, mass=1)
     law = finite_law(ideal, environment)
     norm = sum(abs(c) for c in law.taps) + (2 * law.relaxing[1] if law.relaxing else 0)
-    return Fraction(str(required_damping(decide(ideal, environment)))), norm / 2
+    return Fraction(str(required_damping(decide(ideal, environment)))), Fraction(norm) / 2
 
 
-def accepted(evidence):
+def accepted(evidence: Any) -> bool:
     """True if `zwidth verify` accepts the saved file."""
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         file = Path(folder) / "evidence.json"
@@ -69,7 +77,14 @@ def accepted(evidence):
     return verified[-1]
 
 
-def program(environment, damping, friction, counts=COUNTS, reach=REACH, **implementation):
+def program(
+    environment: Memory,
+    damping: Number,
+    friction: Number,
+    counts: int = COUNTS,
+    reach: int = REACH,
+    **implementation: Any,
+) -> DynamicProgram:
     """The loop with so much of the damping and friction that sustained contact asks for."""
     b, f = needs(environment)
     loop = zw.Device(
@@ -88,18 +103,18 @@ class Enough(Exception):
     """So many rounds were made."""
 
 
-def until(rounds):
+def until(rounds: int) -> Progress:
     """Ends a search after so many rounds: after a time it would end otherwise on another machine."""
     left = itertools.count(rounds, -1)
 
-    def progress(_improved):
+    def progress(_improved: int) -> None:
         if next(left) <= 0:
             raise Enough
 
     return progress
 
 
-def shown(search, steps, rounds):
+def shown(search: Callable[..., Any], steps: Sequence[int], rounds: int) -> bool:
     """True with evidence that is accepted, on one of so many steps per count."""
     for n in steps:
         with contextlib.suppress(Enough):
@@ -109,22 +124,22 @@ def shown(search, steps, rounds):
     return False
 
 
-def proved(loop, steps, rounds=300):
+def proved(loop: DynamicProgram, steps: Sequence[int], rounds: int = 300) -> bool:
     """True with a storage function that is accepted."""
 
-    def search(n, progress):
+    def search(n: int, progress: Progress) -> Any:
         storage = loop.prove(n, progress=progress)
         return storage and storage.certificate()
 
     return shown(search, steps, rounds)
 
 
-def refuted(loop, steps=(64,), rounds=60):
+def refuted(loop: DynamicProgram, steps: Sequence[int] = (64,), rounds: int = 60) -> bool:
     """True with a motion that is accepted."""
     return shown(loop.refute, steps, rounds)
 
 
-def decided(environment, damping, friction, **implementation):
+def decided(environment: Memory, damping: Fraction, friction: Fraction, **implementation: Any) -> str:
     """ "proved", "refuted" or "undecided"; what is tried first is what is sooner found."""
     loop = program(environment, damping, friction, **implementation)
     enough, outside = min(damping, friction) > 1, implementation["surface"] == "position"
@@ -151,14 +166,14 @@ def decided(environment, damping, friction, **implementation):
 # A relaxing law needs less friction than ‖h‖₁ Δ/2: no motion has the encoder's errors all at their
 # worst.  A law that never pulls needs less damping against hands that go no deeper than these.
 
-LAWS = {
+LAWS: dict[str, Memory] = {
     "difference": wall(zw.rendering.BackwardDifference()),
     "window of 2": wall(zw.rendering.Window(2)),
     "one pole, τ = T": wall(zw.rendering.OnePole(1)),
     "one pole, τ = 9T": wall(zw.rendering.OnePole(9)),
     "the same, K = 0": zw.Maxwell(stiffness=Fraction(10, 9), damping=10),
 }
-WAYS = {
+WAYS: dict[str, dict[str, Any]] = {
     "penetration,\ngoes on": {"surface": "penetration", "resets": False},
     "penetration,\nstarts anew": {"surface": "penetration", "resets": True},
     "position": {"surface": "position", "resets": False},
@@ -195,14 +210,15 @@ for name, law in LAWS.items():
 # The crosses are motions as described here, large, at nine tenths of the line.
 
 
-def running_start(environment, damping, size=1000, steps=64):
+def running_start(environment: Memory, damping: Number, size: int = 1000, steps: int = 64) -> Gain | None:
     """A run outside, to and fro over the surface while the filter still tells of it, and slowly back."""
     loop = program(environment, damping, "1.02", surface="position")
+    assert loop.law.relaxing is not None
     p, g, b = (float(v) for v in (*loop.law.relaxing, loop.losses.damping))
     rest = round(12 / (1 - p))
     way = [(1 - p**2) * p**k * size for k in range(rest)][::-1]  # ever faster, to z = size at the surface
     x = [*(1 - np.cumsum(way[::-1])[::-1]), 1.0]
-    z = size
+    z: float = size
     while z > size / 50:
         out = g * z / (4 * b)
         x += [1 - out, 1.0]
@@ -249,7 +265,7 @@ for at in (9, 19, 39):
 nearly = {}
 for at in (9, 19, 39):
     filtered = wall(zw.rendering.OnePole(at))
-    proof = float(decide(zw.Device(damping=1, sample_period=1), filtered).contact_damping)
+    proof = float(decide(zw.Device(damping=1, sample_period=1), filtered).contact_damping or 0)
     assert np.isclose(proof, np.interp(at, tau, enough), rtol=1e-3)
     for part, outcome in ((0.7, "active"), (1.001, "passive")):
         loop = zw.Device(damping=round(part * proof, 4), sample_period=1, mass=1)
@@ -265,7 +281,7 @@ for (name, way, clamped), found in outcomes.items():
     for k, outcome in enumerate(found):
         x = list(WAYS).index(way) + (0.5 if clamped else 0) + 0.04 + 0.14 * k
         row = list(LAWS).index(name) + 0.2
-        table.add_patch(plt.Rectangle((x, row), 0.12, 0.6, color=COLOURS[outcome], lw=0))
+        table.add_patch(Rectangle((x, row), 0.12, 0.6, color=COLOURS[outcome], lw=0))
 for x in range(len(WAYS)):
     table.axvline(x, color="white", lw=6)
     for k, text in enumerate(("may pull", "never pulls")):
@@ -277,7 +293,7 @@ table.tick_params(length=0)
 table.grid(visible=False)
 for side in table.spines.values():
     side.set_visible(False)
-handles = [plt.Rectangle((0, 0), 1, 1, color=colour) for colour in COLOURS.values()]
+handles = [Rectangle((0, 0), 1, 1, color=colour) for colour in COLOURS.values()]
 table.legend(handles, COLOURS, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3, frameon=False)
 table.set_title("(a) enough of both; 0.9 of friction; 0.9 of damping")
 
@@ -286,13 +302,13 @@ needed.plot(tau, linear, color=GREEN, label="penetration: exact, every hand")
 needed.plot(tau, np.where(run > linear, run, np.nan), color=RED, label="position: active below")
 needed.plot(tau, np.where(pole > 0.5, enough, np.nan), color=BLUE, label="position: every hand proved above")
 needed.axhline(DAMPING / 8, color=RED, lw=1, ls=":", label="B/8")
-for (surface, at), ends in bracketed.items():
+for (surface, at), bracket in bracketed.items():
     place, colour = (at * 0.94, GREEN) if surface == "penetration" else (at * 1.06, RED)
-    needed.plot([place, place], ends, color=colour, lw=1.2)
-    needed.plot(place, sum(ends) / 2, "o", color=colour, mfc="white", ms=5.5, zorder=5)
-for at, part in active.items():
-    b = float(part * needs(wall(zw.rendering.OnePole(at)))[0])
-    needed.plot(at, b, "x", color=RED, ms=7, mew=2)
+    needed.plot([place, place], bracket, color=colour, lw=1.2)
+    needed.plot(place, sum(bracket) / 2, "o", color=colour, mfc="white", ms=5.5, zorder=5)
+for at, share in active.items():
+    refuted_at = float(share * needs(wall(zw.rendering.OnePole(at)))[0])
+    needed.plot(at, refuted_at, "x", color=RED, ms=7, mew=2)
 needed.plot(list(nearly), list(nearly.values()), "^", color=BLUE, ms=5, mfc="white")
 needed.plot([], [], "^", color=BLUE, mfc="white", label="refuted by check")
 needed.plot([], [], "o", color=GREY, mfc="white", label="value iteration: 12 counts")
@@ -313,15 +329,15 @@ for name in LAWS:
         if (name, way, False) in outcomes:
             cells = [", ".join(outcomes[name, way, clamped]) for clamped in (False, True)]
             print(f"{name:<18}{' '.join(way.split()):<26}{cells[0]:<32}{cells[1]}")
-enough = {key: found[0] for key, found in outcomes.items()}
-fed = [outcome for (_, way, _), outcome in enough.items() if way != "position"]
-slow = [outcome for (name, way, _), outcome in enough.items() if way == "position" and name in list(LAWS)[3:]]
+first = {key: found[0] for key, found in outcomes.items()}
+fed = [outcome for (_, way, _), outcome in first.items() if way != "position"]
+slow = [outcome for (name, way, _), outcome in first.items() if way == "position" and name in list(LAWS)[3:]]
 print(f"1.02 of both, fed with the penetration: {fed.count('proved')} of {len(fed)} proved")
 print(f"1.02 of both, fed with the position, τ = 9T: {slow.count('refuted')} of {len(slow)} refuted")
-for at, part in active.items():
-    print(f"τ = {at}T, fed with the position: active at {float(part):.2f} of the linear criterion's damping")
-for at, b in nearly.items():
-    print(f"τ = {at}T, fed with the position: proved from b = {b / 0.7:.3f} KT, refuted at {b:.3f} KT")
+for at, share in active.items():
+    print(f"τ = {at}T, fed with the position: active at {float(share):.2f} of the linear criterion's damping")
+for at, most in nearly.items():
+    print(f"τ = {at}T, fed with the position: proved from b = {most / 0.7:.3f} KT, refuted at {most:.3f} KT")
 print(
     "τ = 9T, fed with the position, hands of 12 counts, friction in parts of ‖h‖₁ Δ/2, damping of the linear"
 )

@@ -9,6 +9,8 @@ exactly.  The two-port criterion that is usually taken, with a hold that average
 allows four to eight times as much, and a hand takes energy out.
 """
 
+from collections.abc import Callable
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -19,28 +21,29 @@ plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")
 b, T = float(paddle.damping), float(paddle.sample_period)
 late = paddle.replace(delay=T)
+Need = Callable[[float, float], float]
 
 # %%
 # The need for damping is proportional to the coupling: so the edge of what a device can
 # render is found along rays of constant K_c T : 2 B_c, from the need of one coupling on each.
 
 
-def edge(need):
+def edge(need: Need) -> np.ndarray:
     """K_c [N/m] and B_c [N·s/m] at the edge; need(K_c, B_c) in N·s/m."""
     shares = np.linspace(0, 1, 121)
     couplings = [(float(share) / T, float(1 - share) / 2) for share in shares]
     return np.array([[k * b / need(k, d), d * b / need(k, d)] for k, d in couplings]).T
 
 
-def every(device):
-    return lambda k, d: zw.coupling.coupling_condition(device, k, d).required_damping
+def every(device: zw.Device) -> Need:
+    return lambda k, d: zw.coupling.coupling_condition(device, k, d).required_damping or np.inf
 
 
-def rigid(device):
-    return lambda k, d: zw.check(device, zw.Wall(k, d)).required_damping
+def rigid(device: zw.Device) -> Need:
+    return lambda k, d: zw.check(device, zw.Wall(k, d)).required_damping or np.inf
 
 
-def llewellyn(k, d):
+def llewellyn(k: float, d: float) -> float:
     return zw.coupling.two_port.llewellyn_damping(k, d, T)
 
 
@@ -62,7 +65,8 @@ spring = b / every(late)(1.0, 0.0)
 
 between = (700, "0.1")
 stable = zw.coupling.two_port.impedance_display(paddle, *between).unconditionally_stable
-motion = zw.coupling.coupling_condition(paddle, *between).counterexample.witness
+motion = zw.coupling.coupling_condition(paddle, *between).witness
+assert motion is not None
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 5), layout="constrained")
 left.fill(*np.hstack((edge(llewellyn), [[0], [0]])), color="#E69F00", alpha=0.25)

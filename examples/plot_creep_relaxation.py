@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
+from zwidth.model.environment import Environment
 from zwidth.model.environment.relaxing import compliance
 from zwidth.show import plots
 
@@ -35,7 +36,7 @@ time = np.linspace(-0.2, 2.0, 1101)
 # does not stop, nor come back.
 
 
-def under_a_pulse(body):
+def under_a_pulse(body: Environment) -> np.ndarray:
     return zw.tissue.creep(body, time) - zw.tissue.creep(body, time - 1.0)
 
 
@@ -54,6 +55,6 @@ left.legend()
 
 for name, (body, *_) in bodies.items():
     print(f"{name:22} {1e3 * under_a_pulse(body)[-1]:7.3f} mm stay")
-((rate, _),) = compliance(bodies["standard linear solid"][0]).modes
+rate = compliance(bodies["standard linear solid"][0]).modes[0][0]
 print(f"relaxation time {ETA1 / MU1:.3f} s, retardation time {1 / rate:.3f} s")
 plt.show()

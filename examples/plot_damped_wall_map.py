@@ -18,9 +18,12 @@ so many counts per sample, and each is a bracket: passive below, by a storage
 function, and active above, by a motion.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 
 import zwidth as zw
 from zwidth.passivity.formulas.colgate_schenkel import window_damping
@@ -28,23 +31,28 @@ from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
 BLUE, RED, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
+Number = Fraction | int
 
 
-def device(friction, damping=1):
+def device(friction: Number, damping: Number = 1) -> zw.Device:
     """Only ratios count: T = 1 and Δ = 1, and b = 1 unless given."""
     return zw.Device(
         damping=damping, coulomb_friction=friction, resolution=1, sample_period=1, delay=0, mass=1
     )
 
 
-def largest_stiffness(friction, damping, start, depth, reach, **law):
+def largest_stiffness(
+    friction: Number, damping: Number, start: Number, depth: int, reach: int, **law: Any
+) -> tuple[float, float]:
     """Bracket of y = KT/(2b) for hands of so many counts of depth and counts per sample."""
     wall = zw.Wall(stiffness=2 * start, damping=damping, **law)
     found = zw.limit(device(friction), wall, penetration=depth, speed=reach)
+    assert found.proved_passive
+    assert found.proved_active
     return found.proved_passive / 2, found.proved_active / 2
 
 
-def draw_bracket(axes, x, bracket, marker, colour):
+def draw_bracket(axes: Axes, x: float, bracket: Sequence[float], marker: str, colour: str) -> None:
     """From proved to refuted, and a mark in the middle."""
     axes.plot([x, x], bracket, color=colour, lw=1.2)
     axes.plot(x, sum(bracket) / 2, marker, color=colour, mfc="white", ms=5.5, zorder=5)
@@ -83,6 +91,8 @@ for beta_v in (Fraction(k, 4) for k in (0, 1, 2, 4, 6, 8, 12, 16)):
     found = zw.limit(
         device(enough, enough), wall, "coulomb_friction", penetration=24, speed=2, tolerance=0.005
     )
+    assert found.proved_passive
+    assert found.proved_active
     friction_brackets.append((float(beta_v), (found.proved_active, found.proved_passive)))
 
 # %%
@@ -96,8 +106,8 @@ reach_brackets = []
 for x in SHARES:
     for reach in (2, 4, 8, 16, 32, 64):
         start = Fraction(2 + reach, 1 + reach) - x
-        bracket = [y / float(1 - x) for y in largest_stiffness(2, x, start, 64, reach)]
-        reach_brackets.append((reach, x, bracket))
+        low, high = (y / float(1 - x) for y in largest_stiffness(2, x, start, 64, reach))
+        reach_brackets.append((reach, x, (low, high)))
 
 # %%
 # **(d) A window of two samples.**  Here two conditions differ.  What is proved for every hand is
@@ -133,8 +143,8 @@ plane.set(xlim=(0, 1.05), ylim=(0, 1.05), xlabel="virtual damping B/b", ylabel="
 plane.set_title("(a) passive: x + y ≤ min(1, ρ)")
 plane.legend(loc="upper right")
 
-for beta_v, bracket in friction_brackets:
-    draw_bracket(friction, beta_v, bracket, "o", RED)
+for damping, bracket in friction_brackets:
+    draw_bracket(friction, damping, bracket, "o", RED)
 friction.fill_between([0, 4.2], [0.5, 4.7], 5, color=GREEN, alpha=0.15, lw=0)
 friction.plot([0, 4.2], [0.5, 4.7], color=RED, label="every hand: σ = ½ + β$_v$")
 friction.plot([], [], "o", color=RED, mfc="white", label="value iteration: 24 counts deep, 2 per sample")
@@ -178,7 +188,7 @@ windows.legend(loc="lower left")
 # The numbers.
 
 
-def off(line, bracket):
+def off(line: float, bracket: Sequence[float]) -> float:
     """Largest relative distance of either end of a bracket from a line."""
     return max(abs(end / line - 1) for end in bracket)
 
@@ -192,18 +202,18 @@ for rho in (Fraction(1, 2), Fraction(2)):
             if (r, c) == (rho, clamped)
         ]
         above = [sum(bracket) / 2 - y for y, bracket in rows]
-        law = "never pulls" if clamped else "may pull"
+        kind = "never pulls" if clamped else "may pull"
         print(
-            f"(a) ρ = {float(rho):g}, {law}: KT/(2b) above the line by {min(above):.3f} to {max(above):.3f}"
+            f"(a) ρ = {float(rho):g}, {kind}: KT/(2b) above the line by {min(above):.3f} to {max(above):.3f}"
         )
-worst = max(off(0.5 + beta_v, bracket) for beta_v, bracket in friction_brackets)
+worst = max(off(0.5 + damping, bracket) for damping, bracket in friction_brackets)
 print(f"(b) largest distance of σ from ½ + β_v, ends of the brackets: {worst:.2%}")
 for reach in (2, 8, 64):
-    rows = [f"{bracket[0]:.3f} to {bracket[1]:.3f}" for r, _, bracket in reach_brackets if r == reach]
-    print(f"(c) R = {reach}: K over that of the linear criterion, B/b = 0, 1/4, 1/2: {'; '.join(rows)}")
+    lines = [f"{bracket[0]:.3f} to {bracket[1]:.3f}" for r, _, bracket in reach_brackets if r == reach]
+    print(f"(c) R = {reach}: K over that of the linear criterion, B/b = 0, 1/4, 1/2: {'; '.join(lines)}")
 for reach in (2, 8):
     above = [end / line - 1 for r, _, line, bracket in window_brackets if r == reach for end in bracket]
     print(f"(d) R = {reach}: above the linear criterion by {min(above):.2%} to {max(above):.2%}")
-near = sum(off(0.5 + beta_v, bracket) < 0.01 for beta_v, bracket in friction_brackets)
+near = sum(off(0.5 + damping, bracket) < 0.01 for damping, bracket in friction_brackets)
 print(f"friction: {near} of {len(friction_brackets)} brackets lie within 1 % of σ = ½ + β_v")
 plt.show()

@@ -29,7 +29,7 @@ exact = [spring_stiffness(b, period, round(s * 1e-3, 9)) for s in samples]
 rounded = [spring_stiffness(b, period, ceil(s) * period) for s in samples]
 proved_at = [0, 0.3, 0.5, 0.8, 1, 1.5, 2, 2.7]
 proved = [
-    zw.check(paddle.replace(delay=round(s * 1e-3, 9)), zw.Wall(stiffness=100)).max_stiffness
+    zw.check(paddle.replace(delay=round(s * 1e-3, 9)), zw.Wall(stiffness=100)).max_stiffness or 0
     for s in proved_at
 ]
 

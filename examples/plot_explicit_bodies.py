@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
+from zwidth.model.environment.bodies import Integrator
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
@@ -22,7 +23,7 @@ b, T = float(paddle.damping), float(paddle.sample_period)
 # Half of the damping that the spring leaves is in the coupling.
 
 stiffness = np.arange(5, 300, 5)
-named = {
+named: dict[Integrator, tuple[str, str]] = {
     "semi-implicit-euler": ("semi-implicit Euler", "#0072B2"),
     "velocity-verlet": ("Verlet", "#56B4E9"),
     "runge-kutta-4": ("Runge–Kutta", "#E69F00"),
@@ -31,7 +32,7 @@ named = {
 }
 
 
-def lightest(k, integrator):
+def lightest(k: float, integrator: Integrator) -> float:
     """The lightest passive mass [kg], 0 where none is too light; nan where none is passive."""
     tool = zw.coupling.CoupledBody(k, round((b - k * T / 2) / 2, 6), "1 g", integrator=integrator)
     found = zw.coupling.passive_masses(paddle, tool).smallest
@@ -45,7 +46,7 @@ masses = {name: np.array([lightest(float(k), name) for k in stiffness]) for name
 # pays for.
 
 
-def stiffest(samples):
+def stiffest(samples: int) -> float:
     """K_c [N/m] for so many samples of delay each way, by halving."""
     low, high = 0.0, 2 * b / T
     for _ in range(40):

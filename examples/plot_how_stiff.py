@@ -25,7 +25,7 @@ wall = zw.Wall(stiffness=300)
 rates = [300 * 10 ** (k / 20) for k in range(53)]
 limits = [abbott_okamura_stiffness(0.15, 0.12, 22.4e-6, 1 / rate) for rate in rates]
 proved_at = [500, 1000, 3000, 10_000, 30_000, 100_000]
-proved = [zw.check(paddle.replace(rate=rate), wall).max_stiffness for rate in proved_at]
+proved = [zw.check(paddle.replace(rate=rate), wall).max_stiffness or 0 for rate in proved_at]
 
 figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
 passive = [min(limit) for limit in limits]

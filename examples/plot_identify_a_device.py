@@ -29,7 +29,7 @@ paddle = zw.catalogue.device("haptic-paddle")
 rng = np.random.default_rng(4)
 time = 1e-3 * np.arange(60_001)
 waves = zip(rng.normal(size=12), rng.uniform(0.3, 3, 12), rng.uniform(0, 6.28, 12), strict=True)
-path = sum(a * np.sin(2 * np.pi * f * time + p) for a, f, p in waves)
+path = np.sum([a * np.sin(2 * np.pi * f * time + p) for a, f, p in waves], axis=0)
 path = 0.02 * path / path.std() - 1
 hand = zw.operators.Tracking(path, stiffness=40, damping=0)
 trace = zw.simulate(paddle, zw.Wall(1), hand, 60, initial_position=path[0])  # the wall is a metre away

@@ -8,15 +8,19 @@ numbers are published.  What the sources do not say is chosen here: 1 kHz and no
 course plant; a mass of 0.1 kg, no Coulomb friction and an ideal encoder for the PHANToM.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
+import xarray as xr
 
 import zwidth as zw
 from zwidth.show import plots
 from zwidth.study.bench import standard_laws
 
 plt.rcParams.update(plots.LOOK)
-chosen: dict[str, dict] = {
+chosen: dict[str, dict[str, Any]] = {
     "haptic-paddle": {},
     "course-plant": {"rate": "1 kHz", "coulomb_friction": 0},
     "phantom": {"mass": "0.1"},
@@ -46,9 +50,9 @@ MARKS = {
 FOOT, TOP, APART = 1e-3, 300.0, 0.19  # of the axis [mJ], [mJ]; of two labels [decades]
 
 
-def groups(scores, wanted):
+def groups(scores: xr.Dataset, wanted: float) -> list[tuple[tuple[float, float, str], list[int]]]:
     """Laws that lie within a twentieth of a decade of each other, with their place."""
-    found: list = []
+    found: list[tuple[tuple[float, float, str], list[int]]] = []
     for law in scores.law.values:
         one = scores.sel(law=law)
         given = max(float(one.generated_energy), float(one.dowel_energy), 1e-3 * FOOT) * 1e3
@@ -63,7 +67,7 @@ def groups(scores, wanted):
     return sorted(found)
 
 
-def spread(heights):
+def spread(heights: Sequence[float]) -> np.ndarray:
     """The same order, no two closer than APART."""
     order, result = np.argsort(heights, kind="stable"), np.array(heights)
     for before, after in zip(order, order[1:], strict=False):
@@ -81,13 +85,13 @@ figure, axes = plt.subplots(
 for axis, (name, bench) in zip(axes, benches.items(), strict=False):
     wanted = float(bench.environment.stiffness)
     found = groups(bench.scores, wanted)
-    for ((felt, given, status), laws), height in zip(
+    for ((felt, given, status), numbers), height in zip(
         found, spread([place[1] for place, _ in found]), strict=True
     ):
         axis.plot([felt, 1.12], 10.0 ** np.array([given, height]), color="0.8", lw=0.6, zorder=1)
         mark, colour, size = MARKS[status]
         axis.plot(felt, 10.0**given, mark, color=colour, ms=size, mec="w", mew=0.4, zorder=4 - size / 9)
-        label = ", ".join(map(str, laws))
+        label = ", ".join(map(str, numbers))
         axis.text(1.14, 10.0**height, label, fontsize=7.5, va="center", color=colour)
     axis.axvline(1, color="0.6", lw=0.8, ls=":", zorder=0)
     axis.set(yscale="log", ylim=(FOOT / 2, TOP), xlim=(0, 1.7), xticks=(0, 0.5, 1))

@@ -15,6 +15,7 @@ import zwidth as zw
 from zwidth.show import plots
 
 plt.rcParams.update(plots.LOOK)
+Law = zw.StandardLinearSolid | zw.Wall
 
 # %%
 # Published: environment damping [N·s/m] or sample period [ms], then the largest
@@ -25,7 +26,7 @@ TABLE_2 = """0 5322 5350; 0.1 5238 5242; 0.2 5100 5082; 0.3 5126 5158; 0.4 5100 
 TABLE_3 = "0.5 5982 5754; 1 5542 5604; 2 4904 4734; 3 3826 3806; 4 3574 3576; 5 3374 3310"
 
 
-def published(table):
+def published(table: str) -> np.ndarray:
     return np.array([row.split() for row in table.split(";")], dtype=float).T
 
 
@@ -40,13 +41,13 @@ SPEED, DEPTH, DURATION = 0.02, 0.01, 1.2  # m/s, m, s
 STIFFNESS = np.geomspace(50, 20_000, 60)
 
 
-def phantom(period):
+def phantom(period: float) -> zw.Device:
     return zw.Device(
         mass=MASS, damping=0.27, coulomb_friction=0.04, resolution=3e-5, sample_period=period, name="PHANToM"
     )
 
 
-def largest_stable(wall, period):
+def largest_stable(wall: Law, period: float) -> float:
     """The first stiffness at which the handle swings 0.5 mm more than the guide moves, or NaN."""
     samples = round(DURATION / period)
     path = np.minimum(SPEED * np.arange(samples + 1) * period - 0.002, DEPTH)
@@ -56,20 +57,19 @@ def largest_stable(wall, period):
     )
     moved = path[-1] - path[samples - samples // 4]
     unstable = batch.swing.values > moved + 0.5e-3
-    return STIFFNESS[np.argmax(unstable)] if unstable.any() else np.nan
+    return float(STIFFNESS[np.argmax(unstable)]) if unstable.any() else np.nan
 
 
-def solid(damping):
+def solid(damping: float) -> zw.StandardLinearSolid:
     return zw.StandardLinearSolid(1, 10, damping)
 
 
-def kelvin_voigt(damping):
+def kelvin_voigt(damping: float) -> zw.Wall:
     return zw.Wall(1, damping)
 
 
-def passive(wall, period):
-    limit = zw.check(phantom(period), wall).max_stiffness
-    return 0.0 if limit is None else float(limit)
+def passive(wall: Law, period: float) -> float:
+    return zw.check(phantom(period), wall).max_stiffness or 0.0
 
 
 damping, *measured_2 = published(TABLE_2)

@@ -8,8 +8,11 @@ loop.  Here each experiment is simulated, and what the paper says stands
 beside what the simulation gives.
 """
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
+import xarray as xr
 
 import zwidth as zw
 from zwidth.show import plots
@@ -21,11 +24,11 @@ coarse = paddle.replace(resolution="2.24 mm")  # 100 of its counts
 slow = coarse.replace(sample_period="3 ms")
 
 
-def touch(device, stiffness, hand, duration=2.0):
+def touch(device: zw.Device, stiffness: float, hand: hands.Operator, duration: float = 2.0) -> xr.Dataset:
     return zw.simulate(device, zw.Wall(stiffness), hand, duration)
 
 
-def measured(trace):
+def measured(trace: xr.Dataset) -> dict[str, float]:
     return zw.traces.compare_traces(trace).rows.popitem()[1]
 
 
@@ -52,11 +55,11 @@ second = {k: touch(coarse, k, soft, 3.0) for k in (240, 120, 90, 80)}
 slower = {k: touch(slow, k, soft, 3.0) for k in (240, 120, 80)}
 
 
-def buzz(trace):
+def buzz(trace: xr.Dataset) -> tuple[int, float]:
     """Force changes per second in the last second, and the swing there [µm]."""
     count = round(1 / trace.attrs["sample_period_s"])
     force, x = trace.actuator_force.values[-count:], trace.position.values[-count:]
-    return np.count_nonzero(np.diff(force)), 1e6 * (x.max() - x.min())
+    return int(np.count_nonzero(np.diff(force))), 1e6 * float(np.ptp(x))
 
 
 for stiffness, trace in second.items():
@@ -72,18 +75,18 @@ for stiffness, trace in second.items():
 candidates = np.arange(250.0, 801.0, 10.0)
 
 
-def dowel_limit(device):
+def dowel_limit(device: zw.Device) -> float:
     batch = zw.simulation.simulate_batch(
         device, zw.Wall(1), dowel, 4.0, vary={"environment.stiffness": candidates}
     )
-    return candidates[np.argmax(batch.swing.values > 1e-3)]
+    return float(candidates[np.argmax(batch.swing.values > 1e-3)])
 
 
-def soft_limit(device, force):
+def soft_limit(device: zw.Device, force: float) -> float:
     k = np.arange(80.0, 161.0, 1.0)
     hand = hands.SoftTouch(force=force)
     batch = zw.simulation.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": k})
-    return k[np.argmax(batch.stops.values > 60)]
+    return float(k[np.argmax(batch.stops.values > 60)])
 
 
 fine_limit, coarse_limit = dowel_limit(paddle), dowel_limit(coarse)
@@ -97,7 +100,7 @@ passive = zw.check(coarse, zw.Wall(90))
 # The paper's statements, one by one.
 
 
-def yes(agrees):
+def yes(agrees: bool) -> str:
     return "agrees" if agrees else "DIFFERS"
 
 
@@ -105,13 +108,13 @@ rows = {name: measured(trace) for name, trace in first.items()}
 buzzes = {k: buzz(trace) for k, trace in second.items()}
 slow_buzzes = {k: buzz(trace) for k, trace in slower.items()}
 stops = {name: row["stops"] for name, row in rows.items()}
-swing = {name: 1e3 * row["last_swing"] for name, row in rows.items()}
-change = 100 * (fine_limit - coarse_limit) / fine_limit
+swings = {name: 1e3 * row["last_swing"] for name, row in rows.items()}
+earlier = 100 * (fine_limit - coarse_limit) / fine_limit
 table = [
     (
         "300 N/m: no sustained vibration, typical or malicious",
-        f"swing at the end {swing['typical, 300 N/m']:.2g} and {swing['malicious, 300 N/m']:.2g} mm",
-        yes(max(swing["typical, 300 N/m"], swing["malicious, 300 N/m"]) < 0.01),
+        f"swing at the end {swings['typical, 300 N/m']:.2g} and {swings['malicious, 300 N/m']:.2g} mm",
+        yes(max(swings["typical, 300 N/m"], swings["malicious, 300 N/m"]) < 0.01),
     ),
     (
         "300 N/m: not overdamped, several bounces under the malicious touch",
@@ -121,8 +124,10 @@ table = [
     (
         "770 N/m: the finger cannot sustain, but is more underdamped",
         f"{stops['malicious, 770 N/m']:.0f} stops and turns, swing at the end "
-        f"{swing['malicious, 770 N/m']:.2g} mm",
-        yes(swing["malicious, 770 N/m"] < 0.01 and stops["malicious, 770 N/m"] > stops["malicious, 300 N/m"]),
+        f"{swings['malicious, 770 N/m']:.2g} mm",
+        yes(
+            stops["malicious, 770 N/m"] > stops["malicious, 300 N/m"] and swings["malicious, 770 N/m"] < 0.01
+        ),
     ),
     (
         "770 N/m: a typical touch is well behaved",
@@ -131,7 +136,7 @@ table = [
     ),
     (
         "770 N/m: through a wooden dowel, clearly active",
-        f"swing {swing['dowel, 770 N/m']:.3g} mm, growing; the hand got out "
+        f"swing {swings['dowel, 770 N/m']:.3g} mm, growing; the hand got out "
         f"{1e3 * rows['dowel, 770 N/m']['energy_extracted']:.3g} mJ",
         yes(rows["dowel, 770 N/m"]["energy_extracted"] > 0),
     ),
@@ -152,8 +157,8 @@ table = [
     ),
     (
         "an encoder 100 times coarser moves the first mode by about 5 %",
-        f"dowel from {fine_limit:.0f} N/m, coarse {coarse_limit:.0f} N/m: {change:.0f} %",
-        yes(abs(change) < 10),
+        f"dowel from {fine_limit:.0f} N/m, coarse {coarse_limit:.0f} N/m: {earlier:.0f} %",
+        yes(abs(earlier) < 10),
     ),
     (
         "T = 3 ms moves the second mode by about 10 %",
@@ -187,7 +192,7 @@ print(f"friction at the edge: {needed[0]:.3f} to {needed[1]:.3f} N, in the place
 
 step = np.arange(95.0, 161.0, 0.5)
 SPRING = {"stiffness": 500.0, "speed": 0.002, "start": -0.001}  # reaches the edge with F
-ways: dict[str, tuple[hands.Operator, dict]] = {
+ways: dict[str, tuple[hands.Operator, dict[str, Any]]] = {
     "a push alone": (soft, {}),
     "a finger of 500 N/m": (hands.Finger(force=0.135 + 500 * 2.24e-3, **SPRING), {}),
     "a finger without damping": (hands.SoftTouch(damping=0.0), {}),
@@ -199,11 +204,11 @@ ways: dict[str, tuple[hands.Operator, dict]] = {
 }
 
 
-def begins(device, hand, swing):
+def begins(device: zw.Device, hand: hands.Operator, swing: float) -> float:
     """The softest wall on which the last second still swings by so much [N/m]."""
     batch = zw.simulation.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": step})
     found = batch.swing.values > swing
-    return step[np.argmax(found)] if found.any() else np.nan
+    return float(step[np.argmax(found)]) if found.any() else np.nan
 
 
 for name, (hand, change) in ways.items():
@@ -228,11 +233,11 @@ tried = np.arange(70.0, 131.0)
 pushes, bends = np.array(forces), np.array([0.3e-6, 0.5e-6, 1e-6, 2e-6])
 
 
-def changes_of_force(period):
+def changes_of_force(period: float) -> np.ndarray:
     """Of the last second of two, on every wall by every bend and push; semi-implicit Euler, 50 µs."""
     mass, drag, friction, count, dt = 0.042, 1.85, 0.12, 2.24e-3, 5e-5  # handle and finger
     shape = len(tried), len(bends), len(pushes)
-    x, v, z, wall, found = np.full(shape, count - 5e-5), *(np.zeros(shape) for _ in range(4))
+    x, (v, z, wall, found) = np.full(shape, count - 5e-5), np.zeros((4, *shape))
     walls, bend = tried[:, None, None], bends[:, None]
     for i in range(40_000):
         if i % round(period / dt) == 0:

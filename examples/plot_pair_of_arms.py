@@ -8,6 +8,7 @@ then with a real wall at the follower, shows what becomes of it.
 """
 
 import matplotlib.pyplot as plt
+import xarray as xr
 
 import zwidth as zw
 from zwidth.show import plots
@@ -44,7 +45,7 @@ push = zw.operators.ConstantForce(force=0.5)
 loose = zw.simulate(pair.replace(stiffness="270 N*m/rad"), push, None, 0.4)
 
 
-def show(trace):
+def show(trace: xr.Dataset) -> None:
     """Positions of both arms, and the energy."""
     _, axes = plt.subplots(2, 1, sharex=True, figsize=(8, 4.8), layout="constrained")
     draw_both(axes[0], trace, "position", "position")

@@ -9,6 +9,7 @@ light.  Here 50 g in a hand of 2000 N/m, with a sensor that reads the mean force
 
 import matplotlib.pyplot as plt
 import numpy as np
+import xarray as xr
 
 import zwidth as zw
 from zwidth.model.rendering import ParallelController
@@ -18,7 +19,7 @@ plt.rcParams.update(plots.LOOK)
 hand = zw.operators.Tracking(np.minimum(np.arange(4000) * 2e-5, 0.02), stiffness=2000, damping=0.2)
 
 
-def touch(mass, controller=None):
+def touch(mass: str, controller: ParallelController | None = None) -> xr.Dataset:
     return zw.simulation.simulate_admittance(
         zw.simulation.VirtualBody(mass), hand, 4, sample_period="0.001", controller=controller
     )
@@ -65,5 +66,6 @@ for name, controller in {
     )
 print(f"stable masses: {zw.stability.stable_virtual_masses(2000, '0.2', '0.001')}")
 point = zw.stability.stable_virtual_masses(2000, "0.2", "0.001", sensor="point")
+assert point is not None
 print(f"with a point sensor: above {1e3 * point[0]:g} g")
 plt.show()

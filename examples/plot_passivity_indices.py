@@ -42,6 +42,7 @@ for axis, (name, indices) in zip(axes, found.items(), strict=False):
     axis.set_ylabel("Re $G$ [m/s per N]")
 worst = found["encoder at the handle"].input
 burst = worst.refute(0)
+assert burst is not None
 t, u, y = burst.signals(4000)
 axes[2].plot(t, u, color="#777777", lw=1, label="force [N]")
 axes[2].plot(t, [100 * v for v in y], color="#0072B2", label="velocity [cm/s]")
@@ -51,7 +52,9 @@ axes[2].legend(loc="upper left", bbox_to_anchor=(1, 1))
 # %%
 # The certificate is of the number itself: with that much of the force fed through, the port is passive.
 
-assert worst.certificate().verify()
+proof = worst.certificate()
+assert proof is not None
+assert proof.verify()
 assert burst.verify()
 print(f"short of passive by {-worst.value:.4g} m/s per N at {worst.frequency:.2f} Hz")
 plt.show()

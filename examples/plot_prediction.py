@@ -8,8 +8,11 @@ manipulandum and finger: the wall is evaluated half a sample ahead; and after ea
 put the ball where a wall without samples would have it.
 """
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
+import xarray as xr
 
 import zwidth as zw
 from zwidth.show import plots
@@ -21,23 +24,23 @@ wall = zw.Wall(5000)
 known = {"finger_mass": 0.006, "finger_stiffness": 500, "finger_position": 0.004}
 
 
-def predicted(**other):
+def predicted(**other: Any) -> zw.rendering.Rendered:
     return zw.render(wall, zw.rendering.HalfSamplePrediction(**{**known, **other}))
 
 
-def corrected(**other):
+def corrected(**other: Any) -> zw.rendering.Rendered:
     return zw.render(wall, zw.rendering.CrossingCorrection(**{**known, **other}))
 
 
-def run(environment, duration=1.0, **device):
+def run(environment: zw.Wall | zw.rendering.Rendered, duration: float = 1.0, **device: Any) -> xr.Dataset:
     return zw.simulate(
         ball.replace(**device), environment, finger, duration, initial_position=-0.02, points_per_sample=40
     )
 
 
-def peaks(trace):
+def peaks(trace: xr.Dataset) -> np.ndarray:
     """How far the ball comes back after each strike [mm]."""
-    x = trace.position.values
+    x: np.ndarray = trace.position.values
     turn = np.flatnonzero((x[1:-1] < x[:-2]) & (x[1:-1] <= x[2:])) + 1
     return -1e3 * x[turn]
 
@@ -71,7 +74,7 @@ for stiffness in (500, 1000, 2000):
 # knows another finger, or another mass, than the one that is there; or the readings are rounded,
 # or the force comes late, of which the model knows nothing.
 
-cases: dict[str, tuple[dict, dict]] = {
+cases: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "as it is": ({}, {}),
     "finger taken for half as stiff": ({"finger_stiffness": 250}, {}),
     "finger taken for twice as stiff": ({"finger_stiffness": 1000}, {}),

@@ -14,6 +14,8 @@ Every point is computed twice, by these formulas and by the exact engine.  What 
 paper measured lies ten times higher: :doc:`plot_motorized_guide`.
 """
 
+from math import nan
+
 import matplotlib.pyplot as plt
 
 import zwidth as zw
@@ -24,19 +26,19 @@ b, branch = 0.27, 10
 phantom = zw.catalogue.device("phantom")
 
 
-def solid(eta, period):
+def solid(eta: float, period: float) -> tuple[float, float]:
     """(formula, exact engine) of the standard linear solid [N/m]."""
     formula = 2 * b / period - 2 * branch * eta / (2 * eta + branch * period)
     law = zw.StandardLinearSolid(stiffness=100, branch_stiffness=branch, branch_damping=eta)
-    return formula, zw.check(phantom.replace(sample_period=period), law).max_stiffness
+    return formula, zw.check(phantom.replace(sample_period=period), law).max_stiffness or nan
 
 
-def kelvin_voigt(damping, period):
-    """(formula, exact engine) of the spring and damper [N/m]; None where no stiffness is passive."""
+def kelvin_voigt(damping: float, period: float) -> tuple[float, float]:
+    """(formula, exact engine) of the spring and damper [N/m]; nan where no stiffness is passive."""
     formula = 2 * (b - damping) / period
     law = zw.Wall(stiffness=100, damping=damping)
-    exact = zw.check(phantom.replace(sample_period=period), law).max_stiffness
-    return (formula, exact) if formula >= 0 else (None, exact)
+    exact = zw.check(phantom.replace(sample_period=period), law).max_stiffness or nan
+    return (formula, exact) if formula >= 0 else (nan, exact)
 
 
 # %%
@@ -57,7 +59,7 @@ for axes, name, x in ((left, "a", dampings), (right, "b", [1000 * period for per
     every = len(x) // 8
     axes.plot(x, [formula for formula, _ in relaxing], color="#0072B2", label="standard linear solid")
     axes.plot(x[::every], [exact for _, exact in relaxing[::every]], "o", color="#0072B2", mfc="white", ms=4)
-    if any(formula is not None for formula, _ in stiff):
+    if any(formula >= 0 for formula, _ in stiff):
         axes.plot(x, [formula for formula, _ in stiff], "--", color="#D55E00", label="Kelvin–Voigt")
         axes.plot(x[::every], [exact for _, exact in stiff[::every]], "o", color="#D55E00", mfc="white", ms=4)
     axes.set(ylim=(0, None), ylabel="largest passive stiffness [N/m]")
@@ -68,7 +70,7 @@ right.set(xlim=(0.5, 5), xlabel="sample period T [ms]", title="(b) 0.5 N·s/m; K
 # %%
 # The number: how well the two roads agree (circles: exact engine).
 
-pairs = [pair for relaxing, stiff in curves.values() for pair in (*relaxing, *stiff) if pair[0]]
+pairs = [pair for relaxing, stiff in curves.values() for pair in (*relaxing, *stiff) if pair[0] > 0]
 worst = max(abs(formula - exact) / formula for formula, exact in pairs)
 print(f"largest relative difference over {len(pairs)} points: {worst:.1e}")
 plt.show()

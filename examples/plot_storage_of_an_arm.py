@@ -22,12 +22,12 @@ damping = np.array([[0.03, 0.007], [0.007, 0.02]])  # N·m·s/rad
 # Two links in a horizontal plane: inertia that depends on the elbow, viscous joints, no gravity.
 
 
-def inertia(elbow):
+def inertia(elbow: float) -> np.ndarray:
     c = 0.006 * np.cos(elbow)
     return np.array([[0.021 + 2 * c, 0.005 + c], [0.005 + c, 0.005]])
 
 
-def motion(t, state, torque):
+def motion(t: float, state: np.ndarray, torque: np.ndarray) -> np.ndarray:
     elbow, v = state[1], state[2:]
     coriolis = 0.006 * np.sin(elbow) * np.array([-v[1] * (2 * v[0] + v[1]), v[0] ** 2])
     return np.concatenate([v, np.linalg.solve(inertia(elbow), torque - coriolis - damping @ v)])
@@ -37,12 +37,12 @@ def motion(t, state, torque):
 # Each torque is commanded at the end of a sample and acts, held, after one sample of delay.
 
 torques = np.repeat(np.random.default_rng(1).normal(0, 0.12, (10, 2)), 10, axis=0)
-states = [np.array([0.2, 0.9, 0.0, 0.0])]
+path = [np.array([0.2, 0.9, 0.0, 0.0])]
 for k in range(samples):
     held = torques[k - delay - 1] if k > delay else np.zeros(2)
-    moved = solve_ivp(motion, (0, T), states[-1], "DOP853", args=(held,), rtol=1e-11, atol=1e-12)
-    states.append(moved.y[:, -1])
-states = np.array(states)
+    moved = solve_ivp(motion, (0, T), path[-1], "DOP853", args=(held,), rtol=1e-11, atol=1e-12)
+    path.append(moved.y[:, -1])
+states = np.array(path)
 energy = np.array([s[2:] @ inertia(s[1]) @ s[2:] / 2 for s in states])
 
 # %%

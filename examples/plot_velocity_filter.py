@@ -25,7 +25,7 @@ found = []
 for samples, colour, style in ((1, "#0072B2", "-"), (5, "#D55E00", "--"), (20, "#009E73", "-.")):
     damper = zw.Wall(stiffness=0, damping=1, velocity_filter=zw.rendering.Window(samples))
     verdict = zw.check(device, damper, contact="kept")
-    need, frequency = verdict.required_damping, verdict.critical_frequency
+    need, frequency = verdict.required_damping or 0.0, verdict.critical_frequency or 0.0
     found.append((samples, need, frequency))
     axes.plot(
         *verdict.curve(1000), style, color=colour, label=f"N = {samples}: {need:.3f} at {frequency:.0f} Hz"

@@ -66,7 +66,7 @@ def spectral_radius(stiffness: float, damping: float) -> float:
     """Largest |pole| of the loop: the body behind a zero-order hold, the wall in feedback."""
     to_position = control.ss([[0, 1], [0, -DAMPING / MASS]], [[0], [1 / MASS]], [[1, 0]], [[0]])
     sampled = control.sample_system(to_position, PERIOD, "zoh")
-    loop = control.feedback(sampled, pulse_wall(stiffness, damping))
+    loop: Any = control.feedback(sampled, pulse_wall(stiffness, damping))
     return float(max(abs(loop.poles())))
 
 

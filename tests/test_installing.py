@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.metadata
 import json
 import os
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from zwidth import installing
+from zwidth import installing, showing
 
 ROOT = Path(__file__).parent.parent
 
@@ -87,6 +88,7 @@ def test_from_a_file_it_is_that_file_and_where_it_is_gone_the_libraries(typed, t
     wheel = tmp_path / "zwidth-0.1.0-py3-none-any.whl"
     told = {"url": wheel.as_uri(), "archive_info": {}}
     assert typed(told, "maps") == ["dask[distributed]>=2024"]
+    assert typed(told, "serve,maps") == ["bokeh>=3.5", "dask[distributed]>=2024"]
     wheel.touch()
     assert typed(told, "maps") == [f"zwidth[maps] @ {wheel.as_uri()}"]
 
@@ -146,13 +148,36 @@ def test_where_uv_made_the_environment_it_is_uv(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "executable", str(_python(tmp_path / "my env", "python")))
     monkeypatch.setattr(installing, "find_spec", lambda name: None)
     monkeypatch.chdir(tmp_path)
-    assert installing.line(package="jupyterlab") == "uv pip install --python 'my env/python' jupyterlab"
+    assert installing.line(package="jupyterlab") == 'uv pip install --python "my env/python" jupyterlab'
 
 
 def test_on_windows_it_is_quoted_as_its_shells_want_it(monkeypatch):
-    monkeypatch.setattr(installing, "_WINDOWS", True)
-    assert installing._typed(r"C:\walls[serve]") == r'"C:\walls[serve]"'
-    assert installing._typed(r".venv\Scripts\pip.exe") == r".venv\Scripts\pip.exe"
+    monkeypatch.setattr(showing, "_WINDOWS", True)
+    assert showing.typed(r"C:\walls[serve]", "--rate", "2 kHz") == r'"C:\walls[serve]" --rate "2 kHz"'
+    assert showing.typed(r".venv\Scripts\pip.exe") == r".venv\Scripts\pip.exe"
+
+
+def test_elsewhere_a_shell_gets_the_same_words(monkeypatch):
+    """In the quotes of Windows too, but where a shell would read more into them."""
+    monkeypatch.setattr(showing, "_WINDOWS", False)
+    words = ["my walls/a.toml", "delay=0:5 ms:20", "a$b", 'say "on"', "it's", r"a\b", "", "-o", "x.json"]
+    assert shlex.split(showing.typed(*words)) == words
+    assert showing.typed(*words[:2]) == '"my walls/a.toml" "delay=0:5 ms:20"'
+
+
+def test_every_command_that_is_shown_is_quoted_so_that_windows_takes_it():
+    """Its cmd.exe hands single quotes on: in help, messages, the README, the docs and the examples."""
+    command = r"(?:zwidth [a-z]+|pip install) [^\n\"`]*|--[a-z-]+[ =](?:[a-z]+=)?"
+    single = re.compile(rf"(?:{command})(?<!\w)'[^\n']*'")
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
+    texts = [page.read_text(encoding="utf-8") for page in pages]
+    for path in [*(ROOT / "src").rglob("*.py"), *(ROOT / "examples").rglob("*.py")]:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                texts.append("".join(str(getattr(part, "value", "x")) for part in node.values))
+            elif isinstance(node, ast.Constant):
+                texts.append(str(node.value))
+    assert [line for text in texts for line in single.findall(text)] == []
 
 
 def test_no_message_has_a_command_of_its_own():

@@ -6,9 +6,6 @@ pip keeps in direct_url.json (PEP 610) the folder, file, address or commit that 
 from __future__ import annotations
 
 import json
-import os
-import re
-import shlex
 import shutil
 import sys
 from importlib import import_module
@@ -17,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.errors import InputError
-
-_WINDOWS = os.name == "nt"
+from zwidth.showing import typed
 
 
 def needed(what: str, extra: str = "", *, package: str = "", otherwise: str = "") -> InputError:
@@ -46,8 +42,8 @@ def parquet(cannot: str) -> Any:
 
 
 def line(extra: str = "", package: str = "") -> str:
-    """``pip install 'zwidth[extra]'`` as it works here; or of another package, which an index has."""
-    return " ".join([_pip(), *map(_typed, [package] if package else _zwidth(extra))])
+    """``pip install "zwidth[extra]"`` as it works here; or of another package, which an index has."""
+    return " ".join([_pip(), typed(*([package] if package else _zwidth(extra)))])
 
 
 def _zwidth(extra: str) -> list[str]:
@@ -58,7 +54,10 @@ def _zwidth(extra: str) -> list[str]:
     named, libraries = f"[{extra}]" if extra else "", list[str]()
     try:
         found = distribution("zwidth")
-        libraries = [one.partition(";")[0] for one in found.requires or () if f"extra == '{extra}'" in one]
+        marks = [f"extra == '{name}'" for name in extra.split(",")]
+        libraries = [
+            one.partition(";")[0] for one in found.requires or () if any(mark in one for mark in marks)
+        ]
         told: dict[str, Any] = json.loads(found.read_text("direct_url.json") or "{}")
     except PackageNotFoundError:  # the source is on PYTHONPATH
         told = {"url": Path(__file__).resolve().parents[2].as_uri(), "dir_info": {}}
@@ -93,10 +92,4 @@ def _pip() -> str:
 
 def _near(path: Path) -> str:
     """A path from the folder in which it will be typed, where it is below that."""
-    return _typed(str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path))
-
-
-def _typed(word: str) -> str:
-    if not _WINDOWS:
-        return shlex.quote(word)
-    return word if re.fullmatch(r"[\w.:\\/-]+", word) else f'"{word}"'
+    return typed(str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path))

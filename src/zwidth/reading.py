@@ -6,9 +6,10 @@ other files of the reader's.  Both are refused before anything is expanded or op
 
 from __future__ import annotations
 
-import bz2
 import re
 from collections.abc import Iterable
+from contextlib import suppress
+from importlib import import_module
 from io import BytesIO
 from math import prod
 from pathlib import Path
@@ -38,10 +39,15 @@ _DEFLATE, _MOST_DEFLATED = 1, 1032
 _STEP = 2**20
 
 
+_OF_PYTHON = {"bz2": "bz2", "zstd": "compression.zstd"}
+"""Modules of Python that expand what is compressed so; zstd from 3.14 on."""
+
+
 def unpacking(path: Path, codec: str, piece: bytes | None = None) -> Any:
     """A stream of what a file, or a piece of it, expands to: zstd, lz4, or bz2."""
-    if codec == "bz2":
-        return bz2.open(path if piece is None else BytesIO(piece))
+    if codec in _OF_PYTHON:
+        with suppress(ImportError):
+            return import_module(_OF_PYTHON[codec]).open(path if piece is None else BytesIO(piece))
     pa = library("pyarrow", f"{path} is not read: {codec}, by which it is compressed,")
     return pa.CompressedInputStream(str(path) if piece is None else pa.BufferReader(piece), codec)
 

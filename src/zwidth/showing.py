@@ -7,7 +7,9 @@ its reader did not ask for.
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,6 +23,20 @@ class Html(str):
     """Text that is HTML already; any other text is escaped before it becomes a part of it."""
 
     __slots__ = ()
+
+
+_WINDOWS = os.name == "nt"
+
+
+def typed(*words: str) -> str:
+    """Words of a command as bash, PowerShell and cmd.exe take them: between double quotes where they must."""
+    return " ".join(map(_typed, words))
+
+
+def _typed(word: str) -> str:
+    if re.fullmatch(r"[\w@+=:,./-]+", word.replace("\\", "/") if _WINDOWS else word):
+        return word
+    return f'"{word}"' if _WINDOWS or not re.search(r'["$`!\\]', word) else shlex.quote(word)
 
 
 def printable(text: str) -> str:

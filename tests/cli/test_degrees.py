@@ -109,12 +109,12 @@ def test_the_unit_of_a_range_is_of_both_its_ends(run):
 @pytest.mark.parametrize(
     ("line", "part"),
     [
-        ("compare wheel.toml", "--handle-radius '0.15 m' for a wheel"),
+        ("compare wheel.toml", '--handle-radius "0.15 m" for a wheel'),
         (f"compare wheel.toml {RIM} --law extrapolation", "the bench touches the rim"),
-        ("simulate wheel.toml --operator hands-off --duration 1", "--initial-velocity '360 deg/s'"),
+        ("simulate wheel.toml --operator hands-off --duration 1", '--initial-velocity "360 deg/s"'),
         (f"simulate haptic-paddle --stiffness 300 {HANDS}", "holds a device that turns"),
         (f"map other.toml {MAP}", "a map is of walls"),
-        ("check moza-r9 --stiffness '2 N*m/deg' --law force-bounding", "give yours, --delay '1 ms'"),
+        ("check moza-r9 --stiffness '2 N*m/deg' --law force-bounding", 'give yours, --delay "1 ms"'),
         (f"simulate moza-r9 --stiffness 1 {HANDS}", "zwidth check moza-r9"),
     ],
 )

@@ -38,14 +38,14 @@ def test_without_a_device_it_asks_for_one(run):
 def test_the_law_as_it_was_programmed(run):
     said = run("diagnose shaking.csv wheel.toml --stiffness '20 N*m/rad'").out
     assert "the command is that of the law as stated" in said
-    assert "$ zwidth check wheel.toml --stiffness '20 N*m/rad'" in said
+    assert '$ zwidth check wheel.toml --stiffness "20 N*m/rad"' in said
     run("diagnose shaking.csv wheel.toml --stiffness '40 N*m/rad'").says("0.5 times that of the law")
 
 
 def test_json_says_the_same(run):
     document = run("diagnose shaking.csv wheel.toml --json").json
     assert document["cause"] == "delay"
-    assert document["command"].startswith("zwidth check wheel.toml --stiffness '0.349066 N*m/deg'")
+    assert document["command"].startswith('zwidth check wheel.toml --stiffness "0.349066 N*m/deg"')
     assert document["change"]["parameter"] == "delay"
 
 

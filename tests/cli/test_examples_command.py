@@ -22,6 +22,7 @@ SAYS = {
     "arms.toml": (0, "PASSIVE"),
     "leader.yaml": (1, "8 joints"),
     "room.toml": (0, "paddle: haptic-paddle"),
+    "firmware/device.toml": (0, "PASSIVE"),
 }
 """By the first file of an example, the exit status of its command and what stands in its report."""
 
@@ -66,12 +67,13 @@ def test_the_list_fits_80_columns_and_names_every_file_and_command(run):
 
 def test_every_file_of_the_folder_is_listed_and_says_where_its_numbers_come_from():
     package = zw.samples.path("wheel.toml").parent
-    there = {path.name for path in package.iterdir() if path.is_file()} - {"__init__.py"}
+    files = (path for path in package.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc"))
+    there = {path.relative_to(package).as_posix() for path in files} | {"fit_tissue.py"}
     assert there == set(zw.samples.names())
     told = ("invented", "Simulated", "Abbott and Okamura", "its example", "relaxation.csv")
     for name in there:
         head = "\n".join(zw.samples.path(name).read_text(encoding="utf-8").splitlines()[:20])
-        assert name.endswith(".ipynb") or any(word in head for word in told), name
+        assert name.endswith((".ipynb", ".yml")) or any(word in head for word in told), name
 
 
 def test_nothing_is_replaced_without_force(run, refused):
@@ -87,6 +89,8 @@ def test_a_folder_that_cannot_be_made_is_one_message(refused):
     Path("file").write_text("", encoding="utf-8")
     for folder in ("file", "no/such"):
         refused(f"examples {folder}")
+    Path("firmware").write_text("", encoding="utf-8")
+    assert "firmware" in refused("examples .")
 
 
 def test_an_unknown_sample_is_refused_with_the_names_there_are():
@@ -120,6 +124,17 @@ SAID = {
         "100 N/m: passive",
         "280 N/m: undecided",
         "400 N/m: active",
+    ),
+    "lesson-answers.ipynb": (
+        "2000 Hz: 600 N/m, 0.2 ms late 312 N/m",
+        "0.1 kg: 300.0 N/m, 0.00 mJ came out",
+        "'50.0 mm', '0.0 mm'] 12.97 mJ",
+        "0.7 mm: sampling against viscous damping, up to 300.0 N/m",
+        "0.9 mm: quantization against Coulomb friction, up to 266.7 N/m",
+        "Active for some values of its intervals: at damping 0.1304 N·s/m",
+        "B = 0.075 N·s/m: 150.0 N/m",
+        "PassivityController undecided\nForceBounding passive",
+        "this is not emitted, it is active",
     ),
     "lesson-3-laws.ipynb": ("with controller: 0.00 mJ came out", "undecided"),
 }

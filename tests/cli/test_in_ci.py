@@ -17,10 +17,8 @@ import yaml
 
 import zwidth
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "github-actions"
-
-
-WORKFLOW = yaml.safe_load((EXAMPLE / "passivity.yml").read_text(encoding="utf-8"))
+EXAMPLE = zwidth.samples.path("firmware/device.toml").parent
+WORKFLOW = yaml.safe_load((EXAMPLE / ".github/workflows/passivity.yml").read_text(encoding="utf-8"))
 
 
 def the_step(holds: str) -> dict[str, Any]:
@@ -79,8 +77,12 @@ def test_a_gain_change_that_makes_a_wall_active_fails_the_build(tmp_path):
     stop = tmp_path / "walls" / "bump-stop.toml"
     stop.write_text(stop.read_text(encoding="utf-8").replace("15 N*m/rad", "25 N*m/rad"), encoding="utf-8")
     (tmp_path / "walls" / "soft-lock.toml").write_text("[environment]\ntype = 3\n", encoding="utf-8")
-    bad = run_in(tmp_path)
+    bad = run_in(tmp_path, GITHUB_STEP_SUMMARY=str(tmp_path / "summary.md"))
     assert bad.returncode == 1
+    summary = (tmp_path / "summary.md").read_text(encoding="utf-8").splitlines()
+    assert summary[:2] == ["| wall | verdict |", "|---|---|"]
+    assert summary[2].startswith("| walls/bump-stop.toml | active. A motion of the hand takes ")
+    assert summary[3] == "| walls/soft-lock.toml | it cannot be used, see the log |"
     said = next(line for line in bad.stdout.splitlines() if "bump-stop.toml" in line)
     assert said.startswith("::error file=walls/bump-stop.toml::active. A motion of the hand takes ")
     assert " out of this loop in " in said

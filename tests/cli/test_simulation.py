@@ -181,7 +181,7 @@ def test_a_hand_that_met_nothing_says_so(run, refused):
     touched = "simulate stop.toml --duration 0.2 --operator typical"
     said = run(touched).words
     assert "never reached the wall: it begins at 450 deg" in said
-    assert "--initial-position '450 deg'" in said
+    assert '--initial-position "450 deg"' in said
     assert "contacts made" not in said
     there = "simulate stop.toml --duration 0.2 --operator constant-force --initial-position '450 deg'"
     assert "never reached" not in run(there).out

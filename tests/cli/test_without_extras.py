@@ -4,6 +4,7 @@ import subprocess
 import sys
 from itertools import product
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -46,8 +47,8 @@ def plain(monkeypatch):
     """From then on none of them is installed."""
 
     def begin():
-        for name in [*LOGS, *sys.modules]:
-            if name.partition(".")[0] in LOGS:
+        for name in [*LOGS, "compression.zstd", *sys.modules]:
+            if name.partition(".")[0] in (*LOGS, "compression"):
                 monkeypatch.setitem(sys.modules, name, None)
 
     return begin
@@ -124,6 +125,25 @@ def test_a_file_of_others_says_what_to_type(command, name, refused, plain, tmp_p
     assert f"{name} is not read: " in said
     assert f"takes {KINDS[name]}, which is not installed; type" in said
     assert line("logs") in said
+
+
+def test_python_itself_expands_zstd_where_it_can(plain, monkeypatch, tmp_path):
+    """From 3.14 on; here a module of that name stands in for it."""
+    import pyarrow as pa
+
+    packed = log_in(tmp_path / "log.csv.zst")
+    own = SimpleNamespace(open=lambda file: pa.CompressedInputStream(str(file), "zstd"))
+    plain()
+    monkeypatch.setitem(sys.modules, "compression.zstd", own)
+    assert zw.read_log(packed).samples == 100
+
+
+def test_both_extras_that_a_table_of_a_sweep_takes_are_one_command(refused, plain, monkeypatch):
+    plain()
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    said = refused("sweep haptic-paddle --vary stiffness=100:300:3 -o a.parquet")
+    assert line("logs,maps") in said
+    assert all(name in said for name in ("pyarrow", "zarr"))
 
 
 @pytest.mark.parametrize(

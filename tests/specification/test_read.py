@@ -282,7 +282,7 @@ BAD: list[tuple[str | bytes, str]] = [
     (bad('motion = "linear"\ninertia = 1\ndamping = 1\nrate = 1'), "belongs to a rotary device"),
     (bad('catalogue = "phantom"\ninertia = 1'), "drop inertia"),
     (bad('catalogue = "phantm"'), 'did you mean "phantom"'),
-    (bad('catalogue = "sigma.7"'), "--damping '0.1 N*s/m' --rate '1 kHz'"),
+    (bad('catalogue = "sigma.7"'), '--damping "0.1 N*s/m" --rate "1 kHz"'),
     (bad("catalogue = 1"), "catalogue is a text"),
     (DEVICE + "[environment]\nstiffness = 1", "type is missing; it may be: wall"),
     (DEVICE + "[environment]\ntype = 1", "type is a text"),

@@ -76,8 +76,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "exit status: 0 written, 2 bad input\n\n"
             "examples:\n"
             "  zwidth new device\n"
-            "  zwidth new environment --type wall --motion linear --stiffness '200 N/m' --no-questions\n"
-            "  zwidth new device my-knob.toml --motion rotary --damping '2e-4 N*m*s/rad' --rate '2 kHz' "
+            '  zwidth new environment --type wall --motion linear --stiffness "200 N/m" --no-questions\n'
+            '  zwidth new device my-knob.toml --motion rotary --damping "2e-4 N*m*s/rad" --rate "2 kHz" '
             "--no-questions",
         ),
         "check": Command(
@@ -85,14 +85,14 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "is this device, rendering this environment, passive?",
             "Prove that the sampled loop is passive, or find the hand motion that takes energy out of it;\n"
             "say what limits it, by how much, and what to change.",
-            "A plain number is SI; others carry a unit, as in --rate '1 kHz' or --resolution '22.4 um'.\n"
-            "An interval, as in --damping '0.1 .. 0.2', stands for every value in it.\n\n"
+            'A plain number is SI; others carry a unit, as in --rate "1 kHz" or --resolution "22.4 um".\n'
+            'An interval, as in --damping "0.1 .. 0.2", stands for every value in it.\n\n'
             "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive while contact is kept\n"
             "(and nothing is known of a hand that touches and leaves); with --contact kept that is 0\n\n"
             "examples:\n"
             "  zwidth check haptic-paddle --stiffness 300\n"
             "  zwidth check my-wheel.toml my-bumpstop.toml --json\n"
-            "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
+            '  zwidth check --damping 0.2 --rate "2 kHz" --stiffness 500 --virtual-damping 0.05',
         ),
         "report": Command(
             "check",
@@ -114,12 +114,12 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "how far may a parameter go?",
             "Bracket a limit: the last value that is proved passive, and the first at which a motion of the\n"
             "hand takes energy out, contact made and broken at will.",
-            "A plain number is SI; others carry a unit, as in --penetration '2 mm'. A parameter is\n"
+            'A plain number is SI; others carry a unit, as in --penetration "2 mm". A parameter is\n'
             "named as its option is: --parameter virtual-damping, --parameter rate, …\n\n"
             "exit status: 0 both sides found, 2 bad input, 3 one side or none found\n\n"
             "examples:\n"
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05\n"
-            "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed '0.5 m/s'\n"
+            '  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed "0.5 m/s"\n'
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
         ),
         "explore": Command(
@@ -139,13 +139,13 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "Two arms, leader and follower, joined by a spring and a damper over a link: prove that no two\n"
             "hands take energy out, or find the motion of both that does; say what limits it, and what to\n"
             "change.",
-            "A plain number is SI; others carry a unit, as in --link-delay '2 ms'. --virtual-damping and\n"
+            'A plain number is SI; others carry a unit, as in --link-delay "2 ms". --virtual-damping and\n'
             "--local-damping are of the coupling; the damping of an arm is that of its device.\n\n"
             "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
             "examples:\n"
             "  zwidth pair haptic-paddle --stiffness 100\n"
-            "  zwidth pair leader.toml follower.toml --stiffness 100 --link-delay '2 ms'\n"
-            "  zwidth pair my-pair.toml --link-delay '5 ms' -o pair.json",
+            '  zwidth pair leader.toml follower.toml --stiffness 100 --link-delay "2 ms"\n'
+            '  zwidth pair my-pair.toml --link-delay "5 ms" -o pair.json',
         ),
         "gains": Command(
             "pair",
@@ -158,9 +158,9 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "exit status: 0 every joint passive, 1 one is active, 2 bad input, 3 one is undecided, or the\n"
             "leader feels nothing and there is no law of both arms\n\n"
             "examples:\n"
-            "  zwidth gains leader.yaml follower.yaml --plant my-arm.toml --link-delay '2 ms'\n"
+            '  zwidth gains leader.yaml follower.yaml --plant my-arm.toml --link-delay "2 ms"\n'
             "  zwidth gains yam.yml --bilateral-kp 0.1 --ideal-drive\n"
-            "  zwidth gains so101.json --supply-voltage '7.4 V' --both\n"
+            '  zwidth gains so101.json --supply-voltage "7.4 V" --both\n'
             "  zwidth gains controllers.yaml --plant my-arm.toml",
         ),
         "each": Command(
@@ -169,7 +169,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "Check one wall, or another law, on each of several devices: a class, a batch, one device as\n"
             "several people measured it. On how many it is passive, up to where on each and on all of\n"
             "them; beside it what was measured.",
-            "Devices with ranges, such as --damping '0.1 .. 0.2' in their files, count with all of them.\n\n"
+            'Devices with ranges, such as --damping "0.1 .. 0.2" in their files, count with all of them.\n\n'
             "exit status: that of the worst device: 1 active, 3 undecided, 4 passive while contact is\n"
             "kept, 0 all passive; 2 bad input\n\n"
             "examples:\n"
@@ -200,12 +200,12 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "Stopped, even killed, the same command goes on with what is missing.\n\n"
             "exit status: 0, or 2 on bad input; 130 interrupted (what was finished is kept)\n\n"
             "examples:\n"
-            "  zwidth sweep haptic-paddle --vary stiffness=50:600:40 --vary 'delay=0:5 ms:20' "
+            '  zwidth sweep haptic-paddle --vary stiffness=50:600:40 --vary "delay=0:5 ms:20" '
             "--plot sweep.png\n"
-            "  zwidth sweep my-wheel.toml my-bumpstop.toml --vary 'rate=500:8000:20 log' -o sweep.parquet\n"
-            "  zwidth sweep haptic-paddle --of simulate --operator finger --duration '1 s' "
+            '  zwidth sweep my-wheel.toml my-bumpstop.toml --vary "rate=500:8000:20 log" -o sweep.parquet\n'
+            '  zwidth sweep haptic-paddle --of simulate --operator finger --duration "1 s" '
             "--vary stiffness=100:2000:20 -o touches.zarr\n"
-            "  zwidth sweep haptic-paddle --vary stiffness=1:3000:1000 --vary 'delay=0:5 ms:1000' "
+            '  zwidth sweep haptic-paddle --vary stiffness=1:3000:1000 --vary "delay=0:5 ms:1000" '
             "-o big.zarr --dask tcp://cluster:8786",
         ),
         "play": Command(
@@ -224,7 +224,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "simulate",
             "what happens when a hand touches the wall?",
             "Simulate a hand on the device, without time-step error: positions, forces, every joule.",
-            "A plain number is SI; others carry a unit, as in --duration '2 s' or --operator.force '4 N'.\n\n"
+            'A plain number is SI; others carry a unit, as in --duration "2 s" or --operator.force "4 N".\n\n'
             "exit status: 0 simulated, 2 bad input, 130 interrupted (what was finished is kept)\n\n"
             "examples:\n"
             "  zwidth simulate haptic-paddle --stiffness 770 --operator dowel --duration 2 --plot touch.png\n"
@@ -233,7 +233,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--duration 2\n"
             "  zwidth simulate my-wheel.toml my-touch.toml --sound buzz.wav\n"
             "  zwidth simulate my-arms.toml --operator finger --follower-operator wall "
-            "--follower-operator.stiffness '2 kN/m' --duration 1",
+            '--follower-operator.stiffness "2 kN/m" --duration 1',
         ),
         "serve": Command(
             "machine",
@@ -249,7 +249,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "examples:\n"
             "  zwidth serve haptic-paddle --stiffness 250 --watch terminal\n"
             "  zwidth serve my-knob.toml --connection odrive --connection.port /dev/ttyACM0 "
-            "--safety.force '0.1 N*m' -o session.mcap\n"
+            '--safety.force "0.1 N*m" -o session.mcap\n'
             "  zwidth serve my-inverse.toml --connection inverse --stiffness 200 --watch browser",
         ),
         "emit": Command(
@@ -262,7 +262,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "is given.\n\n"
             "exit status: 0 written, 1 active, 2 bad input, 3 undecided, 4 passive while contact is kept\n\n"
             "examples:\n"
-            "  zwidth emit haptic-paddle --stiffness 250 --target arduino --travel '-50 .. 50 mm' -o paddle\n"
+            '  zwidth emit haptic-paddle --stiffness 250 --target arduino --travel "-50 .. 50 mm" -o paddle\n'
             "  zwidth emit my-wheel.toml my-bumpstop.toml --target cortex-m --number fixed -o wheel\n"
             "  zwidth emit haptic-paddle --stiffness 250 --target javascript -o page",
         ),
@@ -284,7 +284,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "exit status: 0, or 2 on bad input\n\n"
             "examples:\n"
             "  zwidth doctor\n"
-            "  zwidth doctor haptic-paddle --stiffness 250 --duration '10 s' --plot lateness.png",
+            '  zwidth doctor haptic-paddle --stiffness 250 --duration "10 s" --plot lateness.png',
         ),
         "network": Command(
             "machine",
@@ -295,7 +295,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "give --run NAME on each, with channels that reach the others.\n\n"
             "exit status: 0 all ran to the end, 1 one of them did not, 2 bad input, 130 interrupted\n\n"
             "examples:\n"
-            "  zwidth network room.toml --duration '10 s'\n"
+            '  zwidth network room.toml --duration "10 s"\n'
             "  zwidth network room.toml --run bed\n"
             "  zwidth network room.toml --plan",
         ),
@@ -325,8 +325,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "what two hands take out of the others, how the follower follows, what the leader feels.",
             "exit status: 0, or 2 on bad input\n\n"
             "examples:\n"
-            "  zwidth links haptic-paddle --delay '20 ms' --loss 0.5\n"
-            "  zwidth links leader.toml follower.toml --delay '20 ms' --jitter '10 ms' --loss 0.5 --burst 4 "
+            '  zwidth links haptic-paddle --delay "20 ms" --loss 0.5\n'
+            '  zwidth links leader.toml follower.toml --delay "20 ms" --jitter "10 ms" --loss 0.5 --burst 4 '
             "--plot links.png",
         ),
         "workspace": Command(
@@ -337,9 +337,9 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 by a proof on paper alone\n\n"
             "examples:\n"
             "  zwidth workspace haply-2diy --joint-damping 0.003 --stiffness 500 --plot map.png\n"
-            "  zwidth workspace two-link --joint-damping 0.02,0.01 --stiffness 500 --rate '2 kHz'\n"
+            '  zwidth workspace two-link --joint-damping 0.02,0.01 --stiffness 500 --rate "2 kHz"\n'
             "  zwidth workspace my-arm.urdf --stiffness 500\n"
-            "  zwidth workspace my-arm.urdf --pose --stiffness 500 --rotational-stiffness '20 N*m/rad'",
+            '  zwidth workspace my-arm.urdf --pose --stiffness 500 --rotational-stiffness "20 N*m/rad"',
         ),
         "identify": Command(
             "data",
@@ -353,15 +353,15 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "examples:\n"
             "  zwidth identify session.csv -o my-device.toml --plot fig.png\n"
             "  zwidth identify counts.csv --column position=enc --unit position=counts "
-            "--resolution '22.4 um' --stiffness 250\n"
-            "  zwidth identify swing.csv --mass '36 g'",
+            '--resolution "22.4 um" --stiffness 250\n'
+            '  zwidth identify swing.csv --mass "36 g"',
         ),
         "tissue": Command(
             "data",
             "which tissue was it, and how much of it may a device render?",
             "Read a relaxation, creep or loading test of a probe in tissue from a spreadsheet: the model,\n"
             "its numbers with intervals, and the largest scale of it that is proved passive on a device.",
-            "Columns and units are known by their names; others are named: --column force='Ch 2' --unit\n"
+            'Columns and units are known by their names; others are named: --column force="Ch 2" --unit\n'
             "force=mN. Semicolons, decimal commas, units in a row of their own are read.\n\n"
             "exit status: 0 fitted, 2 bad input; with a device that of zwidth check: 0 passive, 1 active,\n"
             "3 undecided, 4 passive while contact is kept\n\n"
@@ -391,8 +391,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "The guess of the device may be rough: after each run the data decide.\n\n"
             "exit status: 0, or 2 on bad input\n\n"
             "examples:\n"
-            "  zwidth plan haptic-paddle --force-noise '0.1 N'\n"
-            "  zwidth plan my-device.toml --force-noise '0.02 N' --length '10 cm' --precision 0.02",
+            '  zwidth plan haptic-paddle --force-noise "0.1 N"\n'
+            '  zwidth plan my-device.toml --force-noise "0.02 N" --length "10 cm" --precision 0.02',
         ),
         "devices": Command(
             "start",

@@ -11,7 +11,7 @@ from zwidth.cli.output import columns, width_of, wrapped
 from zwidth.errors import InputError
 from zwidth.quantity.spoken import ANGLES, note
 
-_USAGE = re.compile(r"\[[^\]]*\]|-\S+ '[^']*'|-\S+ [^\s\[-]\S*|\S+")
+_USAGE = re.compile(r'\[[^\]]*\]|-\S+ "[^"]*"|-\S+ [^\s\[-]\S*|\S+')
 """What of a usage line stays together: what stands in brackets, and an option with its value."""
 
 _OPTION = re.compile(r"""--?[a-z][\w.-]* (?:'[^']*'|"[^"]*")|--?[a-z][\w.-]* [^\s-]\S*|\S+""")

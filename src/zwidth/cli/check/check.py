@@ -87,7 +87,7 @@ def _one_timing(loop: Specification) -> None:
     ranged = [key for key in ("sample_period", "delay") if key in loop.ranges]
     if loop.environment.has_transfer_function or not ranged:
         return
-    named = {"sample_period": ("rate", "--rate '1 kHz'"), "delay": ("delay", "--delay '1 ms'")}
+    named = {"sample_period": ("rate", '--rate "1 kHz"'), "delay": ("delay", '--delay "1 ms"')}
     names, options = zip(*(named[key] for key in ranged), strict=True)
     raise InputError(
         f"{loop.environment.describe(loop.device.motion)} is decided for one {' and one '.join(names)}, of "

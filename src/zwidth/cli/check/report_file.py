@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import CONTACT, LAW, LOOP, PARAMETERS, contact, overrides
 from zwidth.cli.output import check_new, print_text, say_written
 from zwidth.errors import InputError
+from zwidth.showing import typed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -101,4 +101,4 @@ def _command(arguments: argparse.Namespace) -> str:
             f"--{key.replace('_', '-')}={value}" if value.startswith("-") else f"--{key.replace('_', '-')}"
         )
         words += [] if value.startswith("-") else [value]
-    return shlex.join([*words, "-o", "report.html"])
+    return typed(*words, "-o", "report.html")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from zwidth.passivity.scope import TOLD
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
+from zwidth.showing import typed
 
 if TYPE_CHECKING:
     from zwidth.data.diagnosis import Diagnosis, PairDiagnosis
@@ -82,16 +82,16 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
         return None
     asks = "check" if isinstance(change, Change) else "pair"
     if arguments.save is not None:
-        return f"zwidth {asks} {shlex.quote(arguments.save)}"
+        return f"zwidth {asks} {typed(arguments.save)}"
     if not isinstance(change, Change):
         reading = [word for pair in _read_with(arguments) for word in pair]
-        typed = ["zwidth", "diagnose", arguments.log, *arguments.sources, *reading, "-o", "mended.toml"]
-        return f"{shlex.join(typed)} && zwidth pair mended.toml"
+        again = ["zwidth", "diagnose", arguments.log, *arguments.sources, *reading, "-o", "mended.toml"]
+        return f"{typed(*again)} && zwidth pair mended.toml"
     assert isinstance(found, Diagnosis)
     assert found.seen is not None
     other = found.seen.stated is not None and not found.seen.stated.holds
     if change.parameter not in _OPTIONS or arguments.law or other:
-        return f"zwidth diagnose {shlex.quote(arguments.log)} … -o mended.toml && zwidth check mended.toml"
+        return f"zwidth diagnose {typed(arguments.log)} … -o mended.toml && zwidth check mended.toml"
     assert found.seen.law is not None
     words = ["zwidth", "check", *arguments.sources]
     of_law = {"stiffness": "stiffness", "damping": "virtual_damping"}.get(change.parameter)
@@ -103,7 +103,7 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
     )
     if float(change.device.exact("delay")):
         words += ["--delay", f"{1000 * float(change.device.exact('delay')):.6g} ms"]
-    return shlex.join(words)
+    return typed(*words)
 
 
 def _law_as_stated(change: Change) -> list[str]:

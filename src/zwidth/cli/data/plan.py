@@ -51,11 +51,11 @@ def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     typed = {name: getattr(arguments, name) for name in units}
     if typed["force_noise"] is None:
         raise InputError(
-            f"the noise of the force is needed: --force-noise '{_NOISE[motion]}', the standard deviation of "
+            f'the noise of the force is needed: --force-noise "{_NOISE[motion]}", the standard deviation of '
             "the load cell at rest"
         )
     if motion == "rotary" and typed["length"] is None:
-        raise InputError("the length of a stroke is needed: --length '90 deg', as far as the device turns")
+        raise InputError('the length of a stroke is needed: --length "90 deg", as far as the device turns')
     return {
         name: float(parse_number(text, units[name], name)) for name, text in typed.items() if text is not None
     }

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 USAGE = (
     "[SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--target NAME] [--number TYPE] "
-    "[--travel 'LOW .. HIGH'] [--contact KIND] [--anyway] [--json] -o DIRECTORY [--force]"
+    '[--travel "LOW .. HIGH"] [--contact KIND] [--anyway] [--json] -o DIRECTORY [--force]'
 )
 
 
@@ -38,7 +38,7 @@ OPTIONS = (
     {
         "--number TYPE": "double, float or fixed (default: fixed for arduino, float for cortex-m and "
         "simplefoc, else double)",
-        "--travel 'LOW .. HIGH'": "lowest and highest position, such as '-50 .. 50 mm' (default: 32767 "
+        '--travel "LOW .. HIGH"': "lowest and highest position, such as '-50 .. 50 mm' (default: 32767 "
         "counts to each side, in double whatever 32 bits count)",
         "--force-unit U": "unit of the force in fixed point, where the device has no force resolution [N; "
         "rotary N*m]",

@@ -243,7 +243,7 @@ def _hand(
     if isinstance(hand, HandsOff):
         raise InputError(
             "hands-off moves nothing, and a served device begins at rest; one that is let go on its way: "
-            f"zwidth simulate … --operator hands-off --initial-velocity '{THROWN[motion]}'"
+            f'zwidth simulate … --operator hands-off --initial-velocity "{THROWN[motion]}"'
         )
     return hand
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable
 from math import floor, inf, log10
 from pathlib import Path
@@ -27,6 +26,7 @@ from zwidth.model.environment import Wall
 from zwidth.model.specification.read import build_device, tables_of
 from zwidth.passivity.check import check
 from zwidth.quantity.spoken import spoken
+from zwidth.showing import typed
 
 __all__ = ["QUESTIONS", "described"]
 
@@ -72,7 +72,7 @@ def _encoder(ask: Asker, motion: str) -> Row:
 
 def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str) -> list[str]:
     """What to type now: a check, or what must be measured before it."""
-    name = shlex.quote(str(path))
+    name = typed(str(path))
     missing = [key for key in NEEDED if key in unknown]
     if missing:
         tried = f"{name} {guessed(missing, motion)} {_GUESSES['stiffness'][at_handle]}"
@@ -86,7 +86,7 @@ def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str
         *first,
         f"  zwidth check {tried}",
         "the same as a page to hand on:",
-        f"  zwidth report {tried} -o {shlex.quote(str(path.with_suffix('.html')))}",
+        f"  zwidth report {tried} -o {typed(str(path.with_suffix('.html')))}",
         "a file of what it renders, a wall, detents or a stop:",
         f"  zwidth new environment --device {name}",
     ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -21,6 +20,7 @@ from zwidth.quantity.exact import ends
 from zwidth.quantity.spoken import spoken
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
+from zwidth.showing import typed
 
 __all__ = ["QUESTIONS", "described"]
 
@@ -70,13 +70,13 @@ def _next(path: Path, whose: str) -> list[str]:
         else ["the device first, or --device FILE if it has another name:", "  zwidth new device"]
     )
     head = f"next, with a guess of what {whose} lacks:" if missing else "next:"
-    return [*first, head, f"  zwidth check {shlex.quote(whose)} {shlex.quote(str(path))}{guess}"]
+    return [*first, head, f"  zwidth check {typed(whose)} {typed(str(path))}{guess}"]
 
 
 def refuse_a_device(path: Path) -> None:
     """Refuse to write over the file of a device: its name was most likely meant as the device."""
     if path.exists() and lacking(str(path)) is not None:
-        name = shlex.quote(str(path))
+        name = typed(str(path))
         raise InputError(
             f"{path} describes a device, and an environment is a file of its own; to describe what that "
             f"device renders: zwidth new environment --device {name}"

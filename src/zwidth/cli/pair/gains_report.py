@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable
 
 from rich.table import Table as Lines
@@ -14,7 +13,7 @@ from zwidth.data.gains import ArmGains, Controllers, GainsVerdict, HeldJoints, P
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.in_short import pair_in_short
 from zwidth.passivity.scope import TOLD
-from zwidth.showing import Table
+from zwidth.showing import Table, typed
 
 
 def print_gains(verdict: GainsVerdict, in_full: bool = False) -> None:
@@ -86,7 +85,7 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
         one = controllers.cartesian[0]
         rate = one.rate or controllers.rate
         often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
-        ask = f"zwidth workspace ARM.urdf --pose --wall {shlex.quote(path)}{often}"
+        ask = f"zwidth workspace ARM.urdf --pose --wall {typed(path)}{often}"
         lines = [f"{ask} --postures 20000{'' if one.of_task else ' -o passive.yaml'}"]
         if one.nullspace:
             lines.append(f'{ask} --null-stiffness wall --within "2 deg"')

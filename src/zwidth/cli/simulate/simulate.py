@@ -168,7 +168,7 @@ def never_reached(trace: AnyTrace, met: Environment, motion: str) -> str:
         return ""
     unit = GLOSSARY["position"].unit_for(motion)
     starts = shown(begins, unit)
-    nearer = f", or start there: --initial-position '{starts}'" if begins else ""
+    nearer = f', or start there: --initial-position "{starts}"' if begins else ""
     return (
         f"This hand never reached the wall: it begins at {starts}, and the hand came to "
         f"{shown(deepest, unit)}. Let it push harder or longer{nearer}."
@@ -234,7 +234,7 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
     of_follower = given(arguments, [p.key for p in follower_parameters()])
     follower = build_follower(tables.get(FOLLOWER), of_follower, pair.motion)
     if touch.duration is None:
-        raise InputError("no duration is given: set --duration, for example --duration '2 s'")
+        raise InputError('no duration is given: set --duration, for example --duration "2 s"')
     return with_bar(simulated, "samples")(pair, touch.operator, follower, touch.duration, **touch.options)
 
 

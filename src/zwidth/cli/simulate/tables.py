@@ -169,7 +169,7 @@ def build_touch(
     if isinstance(hand, HandsOff) and not {"initial_position", "initial_velocity"} & options.keys():
         raise InputError(
             "hands-off moves nothing by itself: say how it is let go, "
-            f"--initial-velocity '{THROWN[motion]}' or --initial-position '{_BESIDE[motion]}'"
+            f'--initial-velocity "{THROWN[motion]}" or --initial-position "{_BESIDE[motion]}"'
         )
     return Touch(hand, options.pop("duration", None), options)
 
@@ -201,7 +201,7 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
         kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in _fitting(motion))
         flag = f"--{option.replace('_', '-')}"
         raise InputError(
-            f"no hand is given: begin with {flag} {_BEGIN[motion]} --duration '2 s', or take one of: {kinds}"
+            f'no hand is given: begin with {flag} {_BEGIN[motion]} --duration "2 s", or take one of: {kinds}'
         )
     kind = table.text("type")
     if kind == RECORD:

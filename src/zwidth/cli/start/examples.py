@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from pathlib import Path
+from textwrap import fill, indent
 
 from zwidth.cli.output import check_new, quiet_pipe
 from zwidth.errors import InputError
 from zwidth.model import samples
 from zwidth.model.specification.table import plain
+from zwidth.showing import typed
 from zwidth.writing import writing_whole
 
 OPTIONS = (
@@ -31,24 +32,31 @@ def run(arguments: argparse.Namespace) -> int:
     copy_to(folder, arguments.force)
     with quiet_pipe():
         print(f"written: {len(samples.names())} files in {plain(str(folder), 100)}")
-        print("next:" if folder == Path() else f"next:\n  cd {shlex.quote(str(folder))}")
+        print("next:" if folder == Path() else f"next:\n  cd {typed(str(folder))}")
         print(f"  {samples.EXAMPLES[0].command}")
     return 0
 
 
 def copy_to(folder: Path, force: bool) -> None:
     """Copy every sample into a folder, all of them or none."""
-    try:
-        folder.mkdir(exist_ok=True)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{plain(str(folder), 100)} is no folder and cannot be made one: {reason}") from None
+    _make(folder)
     for name in samples.names():
-        check_new(folder / name, force)
+        if (folder / name).exists():
+            check_new(folder / name, force)
     for name in samples.names():
+        _make((folder / name).parent, parents=True)
         with writing_whole(folder / name) as file:
             file.write(samples.path(name).read_bytes())
 
 
+def _make(folder: Path, parents: bool = False) -> None:
+    try:
+        folder.mkdir(parents=parents, exist_ok=True)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{plain(str(folder), 100)} is no folder and cannot be made one: {reason}") from None
+
+
 def _told(example: samples.Example) -> str:
-    return f"{example.meaning}\n  {', '.join(example.files)}\n  {example.command}"
+    files = fill(", ".join(example.files), 78, break_on_hyphens=False)
+    return "\n".join([example.meaning, indent(f"{files}\n{example.command}", "  ")])

@@ -311,5 +311,5 @@ def _touch(arguments: argparse.Namespace, begun: Mapping[str, str]) -> Asked:
 
 def _run(touch: Any) -> dict[str, Any]:
     if touch.duration is None:
-        raise InputError("no duration is given: set --duration, for example --duration '2 s'")
+        raise InputError('no duration is given: set --duration, for example --duration "2 s"')
     return {**touch.options, "duration": touch.duration}

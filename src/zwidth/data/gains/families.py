@@ -90,7 +90,7 @@ def read_feetech(tables: Sequence[GainTable], supply_voltage: Fraction | None, b
     if supply_voltage is None:
         raise InputError(
             "position_p_coefficient is no stiffness by itself: K goes with the servo's voltage; give "
-            "--supply-voltage, such as '7.4 V' or '12 V'"
+            '--supply-voltage, such as "7.4 V" or "12 V"'
         )
     motor = servo(supply_voltage)
     joints = []

@@ -171,7 +171,7 @@ def _expanded(path: Path, stored: bytes, codec: str, size: int) -> bytes | None:
     try:
         with stream:
             return bytes(stream.read(size + 1))
-    except (OSError, ValueError):
+    except Exception:  # each library has its own for what is damaged
         return None
 
 

@@ -54,7 +54,7 @@ EXAMPLES = (
     Example(
         ("hapkit.toml",),
         "a Hapkit and its wall, as C for the board",
-        "zwidth emit hapkit.toml --target arduino --travel '-60 .. 60 mm' -o hapkit",
+        'zwidth emit hapkit.toml --target arduino --travel "-60 .. 60 mm" -o hapkit',
     ),
     Example(
         ("arm.urdf",),
@@ -78,8 +78,18 @@ EXAMPLES = (
     ),
     Example(("room.toml",), "a scene cut into two processes and a device", "zwidth network room.toml --plan"),
     Example(
-        ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb"),
-        "three lessons for a class; the package jupyterlab opens them",
+        (
+            "firmware/device.toml",
+            "firmware/walls/bump-stop.toml",
+            "firmware/walls/soft-lock.toml",
+            "firmware/.github/workflows/passivity.yml",
+        ),
+        "a repository of firmware: its build fails once a gain makes a wall active",
+        "zwidth check firmware/device.toml firmware/walls/bump-stop.toml",
+    ),
+    Example(
+        ("lesson-1-sampling.ipynb", "lesson-2-friction.ipynb", "lesson-3-laws.ipynb", "lesson-answers.ipynb"),
+        "three lessons for a class, and their answers; the package jupyterlab opens them",
         "jupyter lab lesson-1-sampling.ipynb",
     ),
 )
@@ -101,4 +111,4 @@ def path(name: str) -> Path:
     """
     if name not in names():
         raise InputError(f"there is no sample {name[:60]!r}; there are: {', '.join(names())}")
-    return Path(__file__).with_name(name)
+    return Path(__file__).parent / name

@@ -383,7 +383,7 @@ def radius_of(device: Device, given: RealLike | None) -> Exact:
     if given is None:
         raise InputError(
             f"the touches of the bench are a finger's, at a handle or rim, and {device.name} turns: say how "
-            "far from the axis that is, --handle-radius '0.15 m' for a wheel, '2 cm' for a knob"
+            'far from the axis that is, --handle-radius "0.15 m" for a wheel, "2 cm" for a knob'
         )
     own = ROTARY["handle_radius"]
     radius: Exact = read_number(

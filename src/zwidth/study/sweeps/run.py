@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
+from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from zwidth.errors import InputError
-from zwidth.installing import parquet
+from zwidth.installing import imported
 from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
@@ -149,7 +150,9 @@ def _place(path: Path) -> Path:
     if not path.parent.is_dir():
         raise InputError(f"{path} cannot be written: there is no directory {path.parent}")
     if path.suffix == PARQUET:
-        parquet(f"{path} is not written")
+        # zarr holds it until it is whole
+        takes, extras = ("pyarrow", "logs") if find_spec("zarr") else ("pyarrow and zarr", "logs,maps")
+        imported("pyarrow.parquet", f"{path} is not written: Parquet takes {takes}, which", extras)
     return path
 
 
