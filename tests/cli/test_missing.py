@@ -35,6 +35,25 @@ def test_commands_name_the_file_that_is_there(refused, folder, words, meant):
     assert refused(words).endswith(f'did you mean "{meant}"?\n')
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        "tissue none.csv touch",
+        "tissue none.csv --kind none -o none.json",
+        "tissue session.csv none.toml --zero none",
+        "identify none.csv --confidence 2",
+        "identify session.csv none.toml -o none.json",
+        "diagnose none.csv wheel.toml --column none=none",
+        "diagnose session.csv none.toml -o none.json",
+        "gains leader.yaml none.yaml --plot none.png",
+        "gains leader.yaml leader.yaml --plant none.toml --link-delay 3",
+        "plan none.toml --force-noise none",
+    ],
+)
+def test_an_input_that_is_not_there_is_said_before_anything_else(refused, folder, words):
+    assert refused(words).startswith('zwidth: there is no file "none.')
+
+
 def test_a_file_is_named_as_one_would_type_it(folder):
     assert near_file(Path("..") / folder.name / "wheal.toml") == str(Path("..") / folder.name / "wheel.toml")
     assert near_file(folder / "wheal.toml") == str(folder / "wheel.toml")
