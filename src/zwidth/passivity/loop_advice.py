@@ -58,6 +58,9 @@ _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
 _KEPT = " while contact is kept"
 
+_TOO_FAR = 10
+"""Times as far: 60 N·s/m of damping for a hand that touches and leaves help nobody where 0.7 do in contact."""
+
 _OF = {"damping": "device ", "resolution": "encoder ", "time_constant": "filter "}
 
 
@@ -176,13 +179,29 @@ def advise(
 ) -> tuple[Advice, ...]:
     """Advice on every parameter of a loop: how far each may go of a `passive` one, else what to change.
 
-    With `or_kept` a proof of hands that keep contact is better than none; `stiffest` is the loop's
-    `max_stiffness`, which is then not looked for twice.
+    With `or_kept` a proof of hands that keep contact is better than none, and better than a change that goes
+    ten times as far; `stiffest` is the loop's `max_stiffness`, which is then not looked for twice.
     """
     found = tuple(_advised(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest))
-    if passive or not (asked.contact and or_kept) or any(advice.to is not None for advice in found):
+    some = any(advice.to is not None for advice in found)
+    if passive or not (asked.contact and or_kept) or (some and not any(_is_beyond(a, a.current) for a in found)):
         return found
-    return tuple(_advised(replace(asked, contact=False), passive, _KEPT, lambda: None))
+    kept = tuple(_advised(replace(asked, contact=False), passive, _KEPT, lambda: None))
+    if not some:
+        return kept
+    nearer = {own.parameter: own for own in kept}
+    both = ((own, nearer.get(own.parameter, own)) for own in found)
+    return tuple(near if _is_beyond(own, near.to) else own for own, near in both)
+
+
+def _is_beyond(advice: Advice, other: float | str | None) -> bool:
+    """Whether it asks for ten times as much as another value, or for a tenth of it."""
+    if not isinstance(advice.to, float) or not isinstance(other, float) or advice.to == other:
+        return False
+    if advice.parameter == "virtual_damping" and advice.to == 0:  # a bare spring, which anybody can render
+        return False
+    low, high = sorted((abs(advice.to), abs(other)))
+    return high >= _TOO_FAR * low
 
 
 def _advised(asked: Asked, passive: bool, hands: str, stiffest: Guess) -> Iterator[Advice]:

@@ -196,6 +196,8 @@ def _is_proved(test: TissueTest, device: Device, rule: Any, bracket: Bracket) ->
     from zwidth.passivity.check import check_by_closed_forms
 
     law = test.scaled(bracket.proved_passive or 0, rule)
+    if not law.has_transfer_function:
+        return False
     return check_by_closed_forms(device, law, contact=bracket.scope.contact).outcome == "passive"
 
 
