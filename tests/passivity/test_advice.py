@@ -210,7 +210,7 @@ def test_a_spring_behind_a_part_of_a_sample_has_its_own_slack() -> None:
 
 
 def test_a_change_that_nobody_can_make_gives_way_to_one_in_contact() -> None:
-    """A solid behind a delay: b = 60 N·s/m covers a hand that touches and leaves, 0.66 one that stays inside."""
+    """A solid behind a delay: a hand that leaves asks for b = 60 N·s/m, one that stays for 0.66."""
     device = zw.Device(damping="0.05", rate="1 kHz", delay="1 ms")
     tissue = zw.StandardLinearSolid(310, 144, 60)
     told = {advice.parameter: advice for advice in zw.check(device, tissue).advice}

@@ -59,7 +59,7 @@ _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 _KEPT = " while contact is kept"
 
 _TOO_FAR = 10
-"""Times as far: 60 N·s/m of damping for a hand that touches and leaves help nobody where 0.7 do in contact."""
+"""Times as far: 60 N·s/m of damping for a hand that leaves help nobody where 0.7 do in contact."""
 
 _OF = {"damping": "device ", "resolution": "encoder ", "time_constant": "filter "}
 
@@ -184,7 +184,8 @@ def advise(
     """
     found = tuple(_advised(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest))
     some = any(advice.to is not None for advice in found)
-    if passive or not (asked.contact and or_kept) or (some and not any(_is_beyond(a, a.current) for a in found)):
+    is_near = some and not any(_is_beyond(advice, advice.current) for advice in found)
+    if passive or is_near or not (asked.contact and or_kept):
         return found
     kept = tuple(_advised(replace(asked, contact=False), passive, _KEPT, lambda: None))
     if not some:
