@@ -139,9 +139,9 @@ def _sources(arguments: argparse.Namespace) -> list[str]:
 
 
 def _device(arguments: argparse.Namespace) -> DeviceInRange:
-    from zwidth.model.specification.read import load_in_range
+    from zwidth.model.specification.read import read_tables, specified_in_range
 
-    found = load_in_range(_sources(arguments), _words(arguments))
+    found = specified_in_range(read_tables(_sources(arguments), ("device",)), _words(arguments))
     if found.device.motion != "linear":
         raise InputError(
             f"{found.device.name} turns, and a tissue is pushed along a line: give a device whose motion is "

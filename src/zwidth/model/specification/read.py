@@ -134,14 +134,14 @@ def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> 
     return build_device(_device_table(read_tables(sources, ("device",)), overrides))
 
 
-def load_in_range(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> DeviceInRange:
-    """The same; one of the catalogue with stated ranges in the place of what nobody published."""
-    return _in_range(_device_table(read_tables(sources, ("device",)), overrides))
-
-
 def specified_device(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Device:
     """The device of tables, with the command line's parameters."""
     return build_device(_device_table(tables, overrides))
+
+
+def specified_in_range(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> DeviceInRange:
+    """The same; one of the catalogue with stated ranges in the place of what nobody published."""
+    return _in_range(_device_table(tables, overrides))
 
 
 def build_device(table: Table) -> Device:
