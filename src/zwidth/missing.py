@@ -46,9 +46,15 @@ def _beside(path: Path, ending: str) -> list[str]:
 
 
 def suggestion(text: str, known: Iterable[str], option: str = "", more: str = "") -> str:
-    """What may have been meant, as a key or an `option`, or else `more`: everything that is possible."""
+    """What may have been meant, as a key or an `option`, or else `more`: everything that is possible.
+
+    What people call a quantity is answered by its keys alone, and by no other word that is spelled alike.
+    """
     names = list(known)
-    if found := _called(text.lower().replace("-", "_"), names) or get_close_matches(text[:60], names, n=1):
+    found = _called(text, names)
+    if not found:
+        found = get_close_matches(text[:60], names, n=1, cutoff=_ALIKE if found is None else _THE_SAME)
+    if found:
         written = (
             option.format(one.replace("_", "-")) if option else f'"{one_line(one, 60)}"' for one in found
         )
@@ -56,28 +62,37 @@ def suggestion(text: str, known: Iterable[str], option: str = "", more: str = ""
     return more or f"it may be: {', '.join(names)}"
 
 
-def _called(word: str, known: Sequence[str]) -> list[str]:
-    """Of what people call so the keys that are known here; of keys between bars the first."""
-    part, dot, last = word.rpartition(".")  # of a cable, transmission.friction
-    before = part + dot
+_ALIKE, _THE_SAME = 0.6, 0.85
+"""How near a word must be; one that people call something else is answered where it is but misspelled."""
+
+
+def _called(text: str, names: Sequence[str]) -> list[str] | None:
+    """Of what people call so the names that there are, of those between bars the first; else None."""
+    part, dot, last = text.lower().replace("-", "_").rpartition(".")  # of a cable, transmission.friction
+    known = {name.replace("-", "_"): name for name in names}
     for keys, words in _WORDS.items():
         if last in words.split():
-            each = ([before + one for one in either.split("|")] for either in keys.split())
-            found = ([one for one in either if one in known] for either in each)
-            return [one[0] for one in found if one]
-    return []
+            each = ([f"{part}{dot}{one}" for one in either.split("|")] for either in keys.split())
+            found = (next((known[one] for one in either if one in known), None) for either in each)
+            return list(dict.fromkeys(one for one in found if one is not None))
+    return None
 
 
 _WORDS = {
-    "handle_damping|damping handle_coulomb_friction|coulomb_friction": "friction",
-    "handle_damping|damping": "viscous viscosity viscous_friction viscous_damping device_damping",
-    "coulomb_friction": "coulomb dry_friction static_friction",
-    "counts_per_turn resolution": "counts ppr cpr counts_per_rev counts_per_revolution pulses_per_revolution",
-    "resolution counts_per_turn": "encoder encoder_resolution position_resolution",
-    "delay": "latency lag dead_time time_delay",
-    "force_limit": "max_torque max_force torque_limit maximum_torque maximum_force peak_torque peak_force",
+    "handle_damping|damping|joint_damping|plant "
+    "handle_coulomb_friction|coulomb_friction|joint_friction|plant": "friction",
+    "handle_damping|damping|joint_damping|plant": "viscous viscosity viscous_friction viscous_damping "
+    "device_damping",
+    "handle_coulomb_friction|coulomb_friction|joint_friction|plant": "coulomb dry_friction static_friction",
+    "counts_per_turn|encoder resolution|joint_resolution|plant": "counts ppr cpr counts_per_rev "
+    "counts_per_revolution pulses_per_revolution",
+    "resolution|joint_resolution|encoder|plant counts_per_turn": "encoder encoder_resolution "
+    "position_resolution",
+    "delay link_delay": "latency lag dead_time time_delay",
+    "force_limit|torque_limit": "max_torque max_force torque_limit maximum_torque maximum_force "
+    "peak_torque peak_force",
     "rate cutoff": "frequency sample_rate sampling_rate sample_frequency loop_rate update_rate fs",
-    "sample_period": "dt time_step sample_time sampling_time",
+    "sample_period|rate": "dt time_step sample_time sampling_time",
     "stiffness": "k kp spring spring_constant spring_stiffness wall_stiffness",
     "virtual_damping|damping local_damping": "kd damper",
     "damping virtual_damping": "b",

@@ -66,7 +66,7 @@ def test_columns_are_named_as_typed(run, refused):
 @pytest.mark.parametrize(
     ("argv", "message"),
     [
-        ("nowhere.csv", "no such file"),
+        ("nowhere.csv", "there is no file"),
         ("wheel.toml", "wheel.toml"),
         ("shaking.csv wheel.toml -o mended.txt", "TOML"),
         ("shaking.csv haptic-paddle", "linear"),

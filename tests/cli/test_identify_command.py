@@ -148,7 +148,7 @@ def test_files_are_not_replaced_unasked(run, refused):
 @pytest.mark.parametrize(
     ("argv", "said"),
     [
-        ("nothing.csv", "there is no such file"),
+        ("nothing.csv", "there is no file"),
         ("log.csv", "--unit position=mm"),
         ("odd.csv", "--column position=…"),
         ("log.csv --column position=enc", "--unit position=mm"),

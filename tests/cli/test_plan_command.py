@@ -26,4 +26,11 @@ def test_a_file_of_a_device_in_intervals_is_a_guess(run):
         "resolution = 2.24e-05\nsample_period = 0.001\n",
         encoding="utf-8",
     )
-    assert "To know b within" in run("plan mine.toml --force-noise 0.1").out
+    assert "To know b, which" in run("plan mine.toml --force-noise 0.1").out
+
+
+def test_what_nobody_published_is_guessed_within_the_stated_ranges(run, refused):
+    """Of a device whose damping is to be measured no damping is asked for."""
+    told = run("plan touch --mass '0.1 kg' --force-noise '0.02 N'").out
+    assert told.startswith("To know b, which")
+    assert "the guess has no mass" in refused("plan touch --force-noise '0.02 N'")

@@ -153,8 +153,27 @@ def test_two_columns_that_may_be_the_force_are_not_chosen_between(run, refused):
     run(f"tissue a.csv {ONE} --column force=force_base_N")
 
 
+def test_what_nobody_published_is_taken_within_the_ranges_as_check_takes_it(run):
+    """Of the Touch the damping, too: the scale is of the worst ends, and says whether of every value."""
+    write()
+    found = run(f"tissue a.csv touch {ONE} --scaled -o s.toml --json", 3)
+    assert "damping 0.05 N·s/m, Coulomb friction 0.03 N, resolution 100 µm, delay 1 ms" in found.err
+    assert set(found.json["ranges"]["stated"]) == {
+        "damping_N_s_per_m", "coulomb_friction_N", "resolution_m", "delay_s"
+    }  # fmt: skip
+    assert found.json["check"]["outcome"] == "undecided"
+    throughout = found.json["largest_gain"]["for_every_value_of_the_intervals"]
+    assert throughout == {"made_and_broken": False, "kept": True}
+    run("check touch s.toml --contact kept")
+    out = " ".join(run(f"tissue a.csv touch {ONE}", 3).out.split())
+    assert "delay 0 … 1 ms; stated, not measured" in out
+    assert "while contact is kept (for every value of the device's intervals)" in out
+    known = "--damping 1 --delay 0 --coulomb-friction 1 --resolution 0"
+    assert "ranges" not in run(f"tissue a.csv touch {ONE} {known} --json").json
+
+
 def test_a_workbook_and_a_device_by_its_parameters(run, refused):
-    """Its sheets are trials, one may be named, and what the catalogue does not know of a device is typed."""
+    """Its sheets are trials, one may be named, and a device that is in no file is typed."""
     book = Workbook()
     for sheet in (book.active, book.create_sheet("Probe 2")):
         sheet.append(["Prüfzeit [s]", "Standardweg [mm]", "Standardkraft [N]"])
@@ -164,7 +183,9 @@ def test_a_workbook_and_a_device_by_its_parameters(run, refused):
     found = run(f"tissue a.xlsx {ONE} --json").json
     assert (len(found["trials"]), holds_the_truth(found)) == (2, True)
     assert run(f"tissue a.xlsx {ONE} --sheet 'probe 2' --json").json["trials"] == []
-    assert "no source gives the rate" in refused("tissue a.xlsx omega.3 --damping '2 N*s/m'")
+    typed = f"tissue a.xlsx {ONE} --damping '2 N*s/m' --rate"
+    assert run(f"{typed} '1 kHz' --json").json["check"]["outcome"] == "passive"
+    assert "rate must be" in refused(f"{typed} 0")
 
 
 def test_a_workbook_of_an_old_program_is_refused_with_what_to_do(refused):

@@ -209,6 +209,17 @@ def test_a_spring_behind_a_part_of_a_sample_has_its_own_slack() -> None:
     assert all(advice.text.partition(" (")[0].endswith("while contact is kept") for advice in kept.advice)
 
 
+def test_a_change_that_nobody_can_make_gives_way_to_one_in_contact() -> None:
+    """A solid behind a delay: a hand that leaves asks for b = 60 N·s/m, one that stays for 0.66."""
+    device = zw.Device(damping="0.05", rate="1 kHz", delay="1 ms")
+    tissue = zw.StandardLinearSolid(310, 144, 60)
+    told = {advice.parameter: advice for advice in zw.check(device, tissue).advice}
+    assert told["damping"].text.endswith("while contact is kept")
+    assert told["damping"].to < 0.7
+    enough = device.replace(damping=Exact(told["damping"].to))
+    assert zw.check(enough, tissue).outcome == "passive in contact"
+
+
 def test_a_rate_of_whole_samples_stands_alone() -> None:
     """A hair more of it is a delay of a part of a sample, which asks for more: no limit, but where it is."""
     device = zw.Device(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -97,6 +98,22 @@ def test_the_number_to_measure_first() -> None:
     friction = said(device_in(coulomb_friction=(1e-6, 0.4), damping=(0.2, 0.21)), wall).first
     assert friction is not None
     assert friction.key == "coulomb_friction"
+
+
+@pytest.mark.parametrize(
+    ("name", "stiffness"),
+    [("moza-r9", "5"), ("omega.3", "300"), ("feetech-sts3215", "5"), ("dynamixel-mx-64", "1")],
+)
+def test_a_bound_is_the_same_number_at_both_places(name: str, stiffness: str) -> None:
+    """What to measure first, and the largest stiffness, as the advice rounds them: to the safe side."""
+    found = zw.catalogue.in_range(name)
+    verdict = zw.check(found.device, zw.Wall(stiffness))
+    rows = dict(over_ranges(found, zw.Wall(stiffness), verdict).rows())
+    advised = " ".join(advice.text for advice in verdict.advice)
+    ((first, least),) = re.findall(r"(\w+): if it is at least (.+?), this is", rows["measure first"])
+    (most,) = re.findall(r"every device in the ranges: up to (.+?);", rows["stiffness"])
+    assert re.search(rf"raise the (device )?{first} from \S+ \S+ to {least}( |$)", advised)
+    assert f" to {most} " in f"{advised} "
 
 
 def test_no_single_number_may_be_enough() -> None:

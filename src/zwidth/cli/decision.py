@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from zwidth.model.device import Device
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table
+    from zwidth.passivity.interval_devices import OverRanges
     from zwidth.passivity.stability import Stability
     from zwidth.passivity.verdict import Verdict
 
@@ -105,6 +106,29 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         if closed is not None:
             return with_value_iteration(device, law, closed, falling(progress))
         return check(device, law, contact=contact, progress=falling(progress))
+
+
+def one_timing(loop: Specification) -> None:
+    """Refuse a stated range of delay or rate where a law is decided for one of each."""
+    ranged = [key for key in ("sample_period", "delay") if key in loop.ranges]
+    if loop.environment.has_transfer_function or not ranged:
+        return
+    named = {"sample_period": ("rate", '--rate "1 kHz"'), "delay": ("delay", '--delay "1 ms"')}
+    names, options = zip(*(named[key] for key in ranged), strict=True)
+    raise InputError(
+        f"{loop.environment.describe(loop.device.motion)} is decided for one {' and one '.join(names)}, of "
+        f"which the catalogue states a range for {loop.device.name}: give yours, {' '.join(options)}"
+    )
+
+
+def ranges_of(loop: Specification, verdict: Verdict) -> OverRanges | None:
+    """What holds over the ranges of a device of the catalogue, where it has some."""
+    if not loop.ranges:
+        return None
+    from zwidth.model.device.catalogue import DeviceInRange
+    from zwidth.passivity.interval_devices import over_ranges
+
+    return over_ranges(DeviceInRange(loop.device, loop.ranges), loop.environment, verdict)
 
 
 NAMES = "none, finger, dowel; of a rotary device none, hands-on"

@@ -10,17 +10,19 @@ import argparse
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from os.path import exists
+from pathlib import Path
 from typing import Any
 
 from zwidth.cli.parsing import Parameter, dest_of
 from zwidth.errors import InputError
-from zwidth.missing import suggestion
+from zwidth.missing import did_you_mean, suggestion
 from zwidth.model.device import Transmission
 from zwidth.model.device.rotary import ROTARY
 from zwidth.model.rendering import LAWS
 from zwidth.model.specification import load as pairs
 from zwidth.model.specification.environments import TYPES, option_keys
-from zwidth.model.specification.read import DEVICE_KEYS
+from zwidth.model.specification.read import DEVICE_KEYS, refuse_missing
 from zwidth.model.specification.table import quoted
 from zwidth.model.specification.values import BETWEEN
 from zwidth.quantity.glossary import GLOSSARY, Quantity
@@ -161,6 +163,14 @@ def _word(key: str) -> str:
 
 def _bracket(unit: str) -> str:
     return f" [{unit}]" if unit not in ("", "1") else ""
+
+
+def look_for(files: Iterable[str], sources: Iterable[str] = ()) -> None:
+    """Say of an input that it is not there before anything else; a source may be of the catalogue."""
+    for name in files:
+        if not exists(name):
+            raise InputError(f"there is no file {quoted(name)}{did_you_mean(Path(name))}")
+    refuse_missing(sources)
 
 
 SHEET = {"--sheet NAME": "of a workbook, where several hold a recording; of a LeRobot dataset an episode"}

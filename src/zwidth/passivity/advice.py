@@ -38,7 +38,8 @@ class Advice:
     `kind` is "change" for a loop that is not passive and "slack" for one that is; `to` is None where no value
     on the safer side was found that would do alone, and inf ("any" as plain data) where it may have any.
     `is_alone` where it is no limit that keeps it where it is: of values beside it nothing is proved or
-    refuted.  Of an interval it is the end that asks for more.
+    refuted.  Of an interval it is the end that asks for more.  `told` is `to` as the text says it, rounded to
+    the safe side; None where it is no number that was turned.
     """
 
     parameter: str
@@ -48,6 +49,7 @@ class Advice:
     kind: Kind
     text: str
     is_alone: bool = False
+    told: float | None = None
 
     @property
     def is_at_limit(self) -> bool:
@@ -232,9 +234,10 @@ def turn(knob: Knob, motion: str, kind: Kind, grain: int = COARSE) -> Advice:
         to = None
     unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
     is_alone = to == knob.current and knob.stands_alone
-    text = _text(knob, None if to is None else outward(to, knob, spoken(unit)[0]), unit, kind, is_alone)
+    told = None if to is None else outward(to, knob, spoken(unit)[0])
+    text = _text(knob, told, unit, kind, is_alone)
     now, to = knob.sign * knob.current or 0.0, None if to is None else knob.sign * to
-    return Advice(knob.parameter, now, to, unit, kind, text, is_alone)
+    return Advice(knob.parameter, now, to, unit, kind, text, is_alone, told)
 
 
 def _first_crossing(knob: Knob, to: float, grain: int) -> float:
@@ -287,6 +290,12 @@ def outward(value: float, knob: Knob, factor: float = 1.0) -> float:
     return value
 
 
+def digits_of(value: float, unit: str) -> int:
+    """In how many significant digits a number is told to the last, in the unit that is spoken; 6 at least."""
+    size = value * spoken(unit)[0]
+    return next((n for n in range(6, 17) if abs(float(f"{size:.{n}g}") - size) <= 1e-15 * size), 17)
+
+
 def _text(knob: Knob, to: float | None, unit: str, kind: Kind, is_alone: bool) -> str:
     name, hands = knob.name, knob.hands
     higher = knob.more == (knob.sign > 0)
@@ -294,8 +303,7 @@ def _text(knob: Knob, to: float | None, unit: str, kind: Kind, is_alone: bool) -
         return f"no {'higher' if higher else 'lower'} {name} was found that would do alone{hands}"
     if to is None or to == inf:
         return f"{name} may take any value{hands}" if to == inf else f"{name} has no slack"
-    size = to * spoken(unit)[0]
-    digits = next((n for n in range(6, 17) if abs(float(f"{size:.{n}g}") - size) <= 1e-15 * size), 17)
+    digits = digits_of(to, unit)
     near = 4 if digits == 6 and abs(to - knob.current) > 2e-3 * abs(to) else 12
     now, wanted = shown(knob.sign * knob.current, unit, near), shown(knob.sign * to, unit, digits)
     if kind == "change":

@@ -19,8 +19,9 @@ from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.device.catalogue import DeviceInRange, Range
 from zwidth.model.environment.environment import Environment
+from zwidth.passivity.advice import digits_of
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
+from zwidth.passivity.linear.boundary import COARSER, largest_holding
 from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.transmission import seen_at_motor
@@ -33,6 +34,8 @@ from zwidth.quantity.text import in_words, outward_decimal, shown, told_quantity
 
 _BETTER = {"damping": 1, "coulomb_friction": 1, "resolution": 0, "sample_period": 0, "delay": 0}
 """Of what a verdict depends on: which end, low or high, asks for less."""
+
+_RATE = "rate"
 
 
 class Measure(NamedTuple):
@@ -124,10 +127,10 @@ class OverRanges:
     def _first(self, first: Measure) -> str:
         name = _named(first.key, self.ranges[first.key])
         if first.enough is not None:
-            side = "at least" if _BETTER[first.key] or name == "rate" else "at most"
-            enough = shown(first.enough, GLOSSARY[first.key].unit_for(self.motion), 3)
-            if name == "rate":
-                enough = shown(outward_decimal(1 / first.enough, True, 3), "Hz", 3)
+            side = "at least" if _BETTER[first.key] or name == _RATE else "at most"
+            unit = GLOSSARY[_key(first.key, self.ranges[first.key])].unit_for(self.motion)
+            value = 1 / first.enough if name == _RATE else first.enough
+            enough = shown(value, unit, digits_of(value, unit))
             return f"{name}: if it is {side} {enough}, this is passive for every device in the other ranges"
         grows = "from none" if first.times == inf else f"{first.times:.2g} times"
         return f"{name}: over its range the largest stiffness grows {grows}, more than over any other"
@@ -135,7 +138,7 @@ class OverRanges:
 
 def _key(key: str, own: Range) -> str:
     """What the range is of: of a period it is stated as a rate."""
-    return "rate" if own.unit == "Hz" else key
+    return _RATE if own.unit == "Hz" else key
 
 
 def _named(key: str, own: Range) -> str:
@@ -153,7 +156,7 @@ def over_ranges(found: DeviceInRange, law: Environment, verdict: Verdict) -> Ove
 
     `found`: the device, with its ranges; `law`: what is rendered; `verdict`: what `check` says of both.
     """
-    device, keys = found.device, [key for key in found.ranges if key in _BETTER]
+    device, keys, of_box = found.device, [key for key in found.ranges if key in _BETTER], verdict
     said = OverRanges(
         name=device.name, ranges=found.ranges, motion=device.motion, every=None, best=None, first=None
     )
@@ -163,9 +166,12 @@ def over_ranges(found: DeviceInRange, law: Environment, verdict: Verdict) -> Ove
         if device.transmission.encoder != "motor":
             return said
         device = seen_at_motor(device)
-    every, best = (_proved_up_to(one, law) for one in (device, _at_end(device, keys, better=True)))
-    open_still = verdict.outcome not in ("passive", "active")
-    return replace(said, every=every, best=best, first=_first(device, keys, law) if open_still else None)
+        of_box = check_by_closed_forms(device, law)
+    favourable = _at_end(device, keys, better=True)
+    every = _proved_up_to(device, law, of_box)
+    best = _proved_up_to(favourable, law, check_by_closed_forms(favourable, law))
+    first = None if verdict.outcome in ("passive", "active") else _first(device, keys, law, of_box)
+    return replace(said, every=every, best=best, first=first)
 
 
 def _at_end(device: Device, keys: list[str], better: bool) -> Device:
@@ -176,8 +182,14 @@ def _at_end(device: Device, keys: list[str], better: bool) -> Device:
     return device.replace(**chosen) if chosen else device
 
 
-def _proved_up_to(device: Device, law: Environment) -> float:
-    """A stiffness that `check` proves for the whole box of parameters, near the largest; 0 for none."""
+def _proved_up_to(device: Device, law: Environment, verdict: Verdict) -> float:
+    """A stiffness that `check` proves for the whole box of parameters, near the largest; 0 for none.
+
+    It is the one of the verdict's advice, where that is of contact made and broken.
+    """
+    told = _advised(verdict, "stiffness")
+    if told and isfinite(told) and _is_passive(device, law.replace(stiffness=Exact(told))):
+        return told
     largest = _largest(device, law)
     if largest in (0.0, inf):
         return largest
@@ -211,7 +223,7 @@ def _all_hold(device: Device, law: Environment) -> bool:
     return provable(lambda _: (device, law), Fraction(0), True)
 
 
-def _first(device: Device, keys: list[str], law: Environment) -> Measure | None:
+def _first(device: Device, keys: list[str], law: Environment, verdict: Verdict) -> Measure | None:
     """The parameter that moves the answer most, the others at their worst; else the others at their best."""
     if not keys:
         return None
@@ -225,35 +237,32 @@ def _first(device: Device, keys: list[str], law: Environment) -> Measure | None:
     gains, loses, key = max(told_apart)
     if gains <= 1.001 and loses <= 1.001:
         return None
-    enough = _enough(device, key, law)
-    settled = [(value, other) for other in keys if (value := _enough(device, other, law)) is not None]
-    if enough is None and settled:
-        enough, key = settled[0]
-    return Measure(key, enough, gains if gains > 1.001 else loses)
+    settled = {other: value for other in keys if (value := _enough(device, other, law, verdict)) is not None}
+    if key not in settled and settled:
+        key = next(iter(settled))
+    return Measure(key, settled.get(key), gains if gains > 1.001 else loses)
 
 
 def _ratio(more: float, less: float) -> float:
     return 1.0 if more == less else inf if less == 0 else more / less
 
 
-def _enough(device: Device, key: str, law: Environment) -> float | None:
-    """From where on one parameter alone makes the loop passive, to the better end of its range; proved."""
+def _enough(device: Device, key: str, law: Environment, verdict: Verdict) -> float | None:
+    """From where on one parameter alone makes the loop passive, to the better end of its range; proved.
+
+    It is what the advice of the verdict says, in the same digits.
+    """
     low, high = ends(getattr(device, key))
-    upward = bool(_BETTER[key])
-
-    def holds(value: Fraction) -> bool:
-        if not low <= value <= high:
-            return (value > high) if upward else (value < low)
-        return _all_hold(device.replace(**{key: Exact(value)}), law)
-
-    if not holds(high if upward else low):
+    told = _advised(verdict, _RATE if key == "sample_period" else key)
+    if not told:
         return None
-    search = smallest_holding if upward else largest_holding
-    found = search(holds, float((low + high) / 2), COARSER)
-    if found is None:
+    value = Exact(1 / Exact(told).fraction if key == "sample_period" else told)
+    if not low <= value <= high:
         return None
-    factor = spoken(GLOSSARY[key].unit_for(device.motion))[0]
-    value = float(f"{outward_decimal(found * factor, upward, 3) / factor:.15g}")
-    value = min(max(value, float(low)), float(high))
-    part = Interval(Exact(value), Exact(high)) if upward else Interval(Exact(low), Exact(value))
-    return value if _is_passive(device.replace(**{key: part}), law) else None
+    part = Interval(value, Exact(high)) if _BETTER[key] else Interval(Exact(low), value)
+    return float(value) if _is_passive(device.replace(**{key: part}), law) else None
+
+
+def _advised(verdict: Verdict, parameter: str) -> float | None:
+    """What the advice of a verdict says of a parameter, all else within its range."""
+    return next((advice.told for advice in verdict.advice if advice.parameter == parameter), None)

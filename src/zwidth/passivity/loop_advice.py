@@ -59,6 +59,9 @@ _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
 _KEPT = " while contact is kept"
 
+_TOO_FAR = 10
+"""Times as far: 60 N·s/m of damping for a hand that leaves help nobody where 0.7 do in contact."""
+
 _OF = {"damping": "device ", "resolution": "encoder ", "time_constant": "filter "}
 
 
@@ -179,30 +182,41 @@ def advise(asked: Asked, passive: bool, or_kept: bool, stiffest: Guess) -> Advis
     """Advice on every parameter of a loop: how far each may go of a `passive` one, else what to change.
 
     The easiest first, each looked for when it is asked for; in the end, from the device to the law, all of
-    it.  With `or_kept` a proof of hands that keep contact is better than none; `stiffest` is the loop's
-    `max_stiffness`, which is then not looked for twice.
+    it.  With `or_kept` a proof of hands that keep contact is better than none, and better than a change that
+    goes ten times as far; `stiffest` is the loop's `max_stiffness`, which is then not looked for twice.
     """
+    first = dict(_turns(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest))
+    kept: dict[str, Iterator[Advice]] = {}
+    if not passive and asked.contact and or_kept:
+        kept = dict(_turns(replace(asked, contact=False), passive, _KEPT, lambda: None))
     whole: tuple[Advice, ...] = ()
-    for turns in _rounds(asked, passive, or_kept, stiffest):
-        found: dict[str, list[Advice]] = {parameter: [] for parameter, _ in turns}
-        for parameter, advised in sorted(turns, key=lambda turn: easiness(turn[0])):
-            found[parameter] = [*advised]
-            yield from found[parameter]
+    for turns in (first, kept):
+        found: dict[str, list[Advice]] = {parameter: [] for parameter in turns}
+        for parameter in sorted(turns, key=easiness):
+            own = [*turns[parameter]]
+            if any(_is_beyond(advice, advice.current) for advice in own):
+                near = [*kept.get(parameter, ())]
+                own = near if near and _is_beyond(own[0], near[0].to) else own
+            found[parameter] = own
+            yield from own
         whole = tuple(advice for turn in found.values() for advice in turn)
         if any(advice.to is not None for advice in whole):
             break
     return whole
 
 
+def _is_beyond(advice: Advice, other: float | str | None) -> bool:
+    """Whether it asks for ten times as much as another value, or for a tenth of it."""
+    if not isinstance(advice.to, float) or not isinstance(other, float) or advice.to == other:
+        return False
+    if advice.parameter == "virtual_damping" and advice.to == 0:  # a bare spring, which anybody can render
+        return False
+    low, high = sorted((abs(advice.to), abs(other)))
+    return high >= _TOO_FAR * low
+
+
 _Turn = tuple[str, Iterator[Advice]]
 """A parameter, and what is advised of it, not looked for yet."""
-
-
-def _rounds(asked: Asked, passive: bool, or_kept: bool, stiffest: Guess) -> Iterator[list[_Turn]]:
-    """What may be advised; where nothing of it would do, of hands that keep contact."""
-    yield [*_turns(asked, passive, "" if asked.contact or not or_kept else _KEPT, stiffest)]
-    if not passive and asked.contact and or_kept:
-        yield [*_turns(replace(asked, contact=False), passive, _KEPT, lambda: None)]
 
 
 def _turns(asked: Asked, passive: bool, hands: str, stiffest: Guess) -> Iterator[_Turn]:

@@ -247,11 +247,17 @@ def test_the_check_is_at_the_limit_that_is_shown(found):
     assert found.confidence(zw.Wall(stiffness=1.4 * low)) == 0.0
 
 
+def test_units_are_written_as_everywhere(found):
+    said = " ".join([*(one.text for one in found.findings), str(found.estimates["damping"])])
+    assert said.count("N·s/m") == 2
+    assert "N s/m" not in said
+
+
 def test_advice_says_how_much_longer(found):
     """The scatter falls as one over the root of the duration, the shift does not."""
 
     def told(error: float, shift: float) -> str:
-        estimate = Estimate(0.15, error, shift, 10**6, "N s/m")
+        estimate = Estimate(0.15, error, shift, 10**6, "N*s/m")
         return " ".join(
             advice(dataclasses.replace(found, estimates={**found.estimates, "damping": estimate}), 0.99)
         )
@@ -357,7 +363,7 @@ def test_a_picture_is_saved_and_not_replaced_unasked(found, ending, tmp_path):
 )
 def test_what_may_be_none_is_named_with_the_reason(found, part, name, words, capsys):
     """The lowest end decides: of the damping, of one direction, of the slope at the largest speed."""
-    loose = Estimate(0.1, 0.0, 0.2, 10**6, "N s/m")
+    loose = Estimate(0.1, 0.0, 0.2, 10**6, "N*s/m")
     own = getattr(found, part)
     changed = {**own, name: loose} if isinstance(own, dict) else own._replace(**{name: loose})
     poor = dataclasses.replace(found, **{part: changed})

@@ -125,7 +125,7 @@ def test_a_first_run_is_a_guess():
 
 def test_the_protocol_can_be_followed():
     text = repr(zw.plan(paddle(), force_noise=0.1))
-    assert text.splitlines()[0].startswith("To know b within ±0.05 of itself")
+    assert text.splitlines()[0].startswith("To know b, which sets the limit K = 2b/T, within ±5 % ")
     assert "9 strokes of some 6 cm, 1 s each" in text
     assert "84 strokes of some 6 cm, 0.25 s each" in text
     assert "Expected: 3 runs of 30 s" in text
@@ -134,7 +134,7 @@ def test_the_protocol_can_be_followed():
     )
     text = repr(zw.plan(wheel, force_noise=1e-3, length=1.5))
     assert "strokes of some 1.5 rad" in text
-    assert "N m will act" in text
+    assert "N·m will act" in text
 
 
 @pytest.mark.parametrize(

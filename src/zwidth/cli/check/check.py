@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from zwidth.cli.decision import NAMES, asked, decided, exit_status, with_hands
+from zwidth.cli.decision import NAMES, asked, decided, exit_status, one_timing, ranges_of, with_hands
 from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output
 from zwidth.cli.output import print_found, targets
-from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
@@ -46,11 +45,11 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth check`: the status says the outcome."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = asked(arguments, in_range=True).loop
-    _one_timing(loop)
+    one_timing(loop)
     active = _tolerated(loop, arguments.active_below)
     hands = with_hands(loop, arguments.hands)
     verdict = decided(loop, contact(arguments))
-    ranges = _ranges(loop, verdict)
+    ranges = ranges_of(loop, verdict)
     if save is not None:
         verdict.save(save, _reports(hands, active_hand=active, ranges=ranges))
     if plot is not None:
@@ -80,29 +79,6 @@ def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | No
     from zwidth.quantity.units import parse_number
 
     return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
-
-
-def _one_timing(loop: Specification) -> None:
-    """Refuse a stated range of delay or rate where a law is decided for one of each."""
-    ranged = [key for key in ("sample_period", "delay") if key in loop.ranges]
-    if loop.environment.has_transfer_function or not ranged:
-        return
-    named = {"sample_period": ("rate", '--rate "1 kHz"'), "delay": ("delay", '--delay "1 ms"')}
-    names, options = zip(*(named[key] for key in ranged), strict=True)
-    raise InputError(
-        f"{loop.environment.describe(loop.device.motion)} is decided for one {' and one '.join(names)}, of "
-        f"which the catalogue states a range for {loop.device.name}: give yours, {' '.join(options)}"
-    )
-
-
-def _ranges(loop: Specification, verdict: Verdict) -> OverRanges | None:
-    """What holds over the ranges of a device of the catalogue, where it has some."""
-    if not loop.ranges:
-        return None
-    from zwidth.model.device.catalogue import DeviceInRange
-    from zwidth.passivity.interval_devices import over_ranges
-
-    return over_ranges(DeviceInRange(loop.device, loop.ranges), loop.environment, verdict)
 
 
 def _in_full(verdict: Verdict, hands: Mapping[str, Stability], **reports: Report | None) -> str:

@@ -16,6 +16,7 @@ from zwidth.cli.options import (
     as_typed,
     device_parameters,
     given,
+    look_for,
     output,
     overrides,
     reading_of,
@@ -77,6 +78,7 @@ OPTIONS = (
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth diagnose`: 0 where the cause is named, 3 where the data do not say."""
+    look_for([arguments.log], arguments.sources)
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != ".toml":
         raise InputError(f"--save: the loop is saved as TOML, mended.toml; got {quoted(save.name)}")

@@ -17,6 +17,7 @@ from zwidth.cli.options import (
     both_environments,
     environment_parameters,
     given,
+    look_for,
     output,
     reading_of,
 )
@@ -71,6 +72,7 @@ OPTIONS = (
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
+    look_for((arguments.log, *_further_logs(arguments)), _specifications(arguments))
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != ".toml":
         raise InputError(f"--save: a device is saved as TOML, my-device.toml; got {quoted(save.name)}")
@@ -123,6 +125,10 @@ def _further_logs(arguments: argparse.Namespace) -> list[str]:
     return [name for name in arguments.sources if not name.lower().endswith(".toml")]
 
 
+def _specifications(arguments: argparse.Namespace) -> list[str]:
+    return [name for name in arguments.sources if name.lower().endswith(".toml")]
+
+
 def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
     reading = reading_of(arguments, QUANTITIES)
     for name in ("sample_rate", "sample_period", "resolution", "counts_per_turn", "sheet", "motion"):
@@ -170,8 +176,7 @@ def _environment(arguments: argparse.Namespace) -> Any:
 
     keys = [p.key for p in environment_parameters()]
     words = given(arguments, (*keys, *(BEHIND + key for key in keys)))
-    further = _further_logs(arguments)
-    tables = read_tables([name for name in arguments.sources if name not in further])
+    tables = read_tables(_specifications(arguments))
     if "device" in tables:
         raise InputError(
             f"{tables['device'].label} gives a device, and here the device comes from the log; "

@@ -8,7 +8,7 @@ from typing import Any
 from zwidth.cli.options import DEVICE, device_parameters, given
 from zwidth.cli.output import print_text
 from zwidth.errors import InputError
-from zwidth.model.specification.read import LOOP_TABLES, read_tables, specified_device
+from zwidth.model.specification.read import LOOP_TABLES, read_tables, specified_in_range
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.data.identification.device.plan import plan_identification
 
     tables = read_tables(arguments.sources, LOOP_TABLES)
-    device = specified_device(tables, given(arguments, [p.key for p in device_parameters()]))
+    device = specified_in_range(tables, given(arguments, [p.key for p in device_parameters()])).device
     plan = plan_identification(device, **_numbers(arguments, device.motion))
     print_text(plan)
     return 0

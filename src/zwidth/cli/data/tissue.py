@@ -6,9 +6,9 @@ import argparse
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.data.results import FittedTissue, OnDevice, of_which
-from zwidth.cli.decision import decided, exit_status
-from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, output, pairs_of
+from zwidth.cli.data.results import FittedTissue, OnDevice
+from zwidth.cli.decision import decided, device_of_one_value, exit_status, one_timing, ranges_of
+from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, look_for, output, pairs_of
 from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.missing import suggestion
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from zwidth.data.tissue import TissueTest
     from zwidth.model.device import Device
+    from zwidth.model.device.catalogue import DeviceInRange
+    from zwidth.passivity.bracket import Bracket
 
 
 QUANTITIES = ("time", "indentation", "force")
@@ -69,6 +71,7 @@ OPTIONS = (
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth tissue`: 0; with a device that of `zwidth check` of the tissue on it."""
+    look_for([arguments.test], _sources(arguments))
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     _check(arguments, save)
     found = _found(arguments)
@@ -104,7 +107,7 @@ def _check(arguments: argparse.Namespace, save: Path | None) -> None:
 def _found(arguments: argparse.Namespace) -> FittedTissue:
     from zwidth.data.tissue import read_test
 
-    device = _device(arguments) if _names_device(arguments) else None
+    in_range = _device(arguments) if _names_device(arguments) else None
     options: dict[str, Any] = {
         "columns": pairs_of("--column", arguments.columns, QUANTITIES),
         "units": pairs_of("--unit", arguments.units, QUANTITIES),
@@ -120,7 +123,7 @@ def _found(arguments: argparse.Namespace) -> FittedTissue:
             sheet=arguments.sheet,
         )
     rule: Any = arguments.discretization or DISCRETIZATIONS[0]
-    return FittedTissue(test, rule, None if device is None else _wall(test, device, rule))
+    return FittedTissue(test, rule, None if in_range is None else _wall(test, in_range, rule))
 
 
 def _names_device(arguments: argparse.Namespace) -> bool:
@@ -131,16 +134,20 @@ def _words(arguments: argparse.Namespace) -> dict[str, str]:
     return given(arguments, [parameter.key for parameter in device_parameters()])
 
 
-def _device(arguments: argparse.Namespace) -> Device:
-    from zwidth.model.specification.read import load_device
+def _sources(arguments: argparse.Namespace) -> list[str]:
+    return [] if arguments.device is None else [arguments.device]
 
-    sources = [] if arguments.device is None else [arguments.device]
-    device = load_device(sources, _words(arguments))
-    if device.motion != "linear":
+
+def _device(arguments: argparse.Namespace) -> DeviceInRange:
+    from zwidth.model.specification.read import read_tables, specified_in_range
+
+    found = specified_in_range(read_tables(_sources(arguments), ("device",)), _words(arguments))
+    if found.device.motion != "linear":
         raise InputError(
-            f"{device.name} turns, and a tissue is pushed along a line: give a device whose motion is linear"
+            f"{found.device.name} turns, and a tissue is pushed along a line: give a device whose motion is "
+            "linear"
         )
-    return device
+    return found
 
 
 def _number(typed: str | None) -> int | None:
@@ -151,21 +158,47 @@ def _number(typed: str | None) -> int | None:
     return int(typed)
 
 
-def _wall(test: TissueTest, device: Device, rule: Any) -> OnDevice:
-    """The tissue on the device, its largest passive scale, and all that the intervals allow."""
+def _wall(test: TissueTest, found: DeviceInRange, rule: Any) -> OnDevice:
+    """The tissue on the device, its largest passive scale, and all that the intervals allow.
+
+    The verdicts are of every value of the device's intervals; the scale is looked for at their worst ends.
+    """
     from zwidth.model.specification.read import Specification
 
-    verdict = decided(Specification(device, test.environment(rule)))
+    device = found.device
+    loop = Specification(device, test.environment(rule), found.ranges)
+    one_timing(loop)
+    verdict = decided(loop)
+    asked = OnDevice(device, verdict, ranges_of(loop, verdict))
+    worst = device_of_one_value(device)
     try:
-        bracket, kept = test.wall(device, rule), test.wall(device, rule, "kept")
+        bracket, kept = test.wall(worst, rule), test.wall(worst, rule, "kept")
     except InputError as error:  # a contact that nothing decides on this device
-        return OnDevice(device, verdict, None, None, str(error), None)
-    more = (kept.proved_passive or 0) > 1.01 * (bracket.proved_passive or 0)
+        return asked._replace(reason=str(error))
+    if (kept.proved_passive or 0) > 1.01 * (bracket.proved_passive or 0):
+        asked = asked._replace(kept=kept)
+    asked = asked._replace(bracket=bracket)
+    if worst is not device:
+        known = [one for one in (bracket, asked.kept) if one is not None and one.proved_passive is not None]
+        throughout: dict[str, bool] = {
+            one.scope.contact: _is_proved(test, device, rule, one) for one in known
+        }
+        asked = asked._replace(throughout=throughout)
     try:
         box = test.environment(rule, level=LEVEL)
     except InputError:  # intervals that are not to be trusted: the report says which
-        return OnDevice(device, verdict, bracket, kept if more else None, "", None)
-    return OnDevice(device, verdict, bracket, kept if more else None, "", decided(Specification(device, box)))
+        return asked
+    return asked._replace(box=decided(Specification(device, box)))
+
+
+def _is_proved(test: TissueTest, device: Device, rule: Any, bracket: Bracket) -> bool:
+    """Whether the scale that is proved at the worst ends of intervals is proved of all between, too."""
+    from zwidth.passivity.check import check_by_closed_forms
+
+    law = test.scaled(bracket.proved_passive or 0, rule)
+    if not law.has_transfer_function:
+        return False
+    return check_by_closed_forms(device, law, contact=bracket.scope.contact).outcome == "passive"
 
 
 def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
@@ -182,7 +215,8 @@ def _save(found: FittedTissue, path: Path, scaled: bool) -> None:
         law = found.test.scaled(bracket.proved_passive, found.rule)
         device = found.wall.device
         taken = ", ".join(map(in_words, device.assumed))
-        proved = f"proved passive{of_which(bracket)} on {device.name}{taken and f', {taken} taken as 0'}"
+        on = f"{device.name}{taken and f', {taken} taken as 0'}"
+        proved = f"proved passive{found.wall.of_which(bracket)} on {on}"
         remark = f"# Every force times {bracket.proved_passive:.6g}: {proved}.\n"
     numbers = [f"#   {name}: {low_high} {unit}" for name, _, low_high, unit in found.test.parameters()[1:]]
     head = [f"# Tissue of a {found.test.test.kind} test, by zwidth tissue; 95 % intervals:", *numbers]
@@ -202,6 +236,9 @@ def _json(found: FittedTissue) -> str:
             "proved_passive_while_contact_is_kept": wall.kept and wall.kept.proved_passive,
             "proved_active": wall.bracket and wall.bracket.proved_active,
             "hand": wall.bracket and wall.bracket.hand,
+            "for_every_value_of_the_intervals": {k.replace(" ", "_"): v for k, v in wall.throughout.items()},
         }
+        if wall.ranges is not None:
+            document["ranges"] = wall.ranges.to_dict()
         document["check_of_intervals"] = None if wall.box is None else wall.box.outcome
     return to_json(document)

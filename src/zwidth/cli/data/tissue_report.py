@@ -8,7 +8,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.data.results import FittedTissue, OnDevice, of_which
+from zwidth.cli.data.results import FittedTissue, OnDevice
 from zwidth.cli.page import Row, blocks, headline, items, more_with_all, page, section, small_print
 from zwidth.data.logs import Finding
 from zwidth.data.tissue import TissueTest
@@ -119,7 +119,9 @@ def _wall(wall: OnDevice | None) -> Iterator[Row]:
         return
     outcome = wall.verdict.outcome
     yield f"on {wall.device.name}", Text(f"{outcome}: {wall.verdict.claim}", style=TOLD[outcome].terminal)
-    yield "scale", wall.reason if wall.bracket is None else _scale(wall.bracket, wall.kept)
+    if wall.ranges is not None:
+        yield from ((name, text) for name, text in wall.ranges.rows() if name != "stiffness")
+    yield "scale", wall.reason if wall.bracket is None else _scale(wall, wall.bracket)
     if wall.box is None:
         yield "intervals", "not checked: see what to doubt, or the model takes none"
     else:
@@ -127,11 +129,11 @@ def _wall(wall: OnDevice | None) -> Iterator[Row]:
     yield "assumes", small_print(in_short(wall.verdict.scope, outcome))
 
 
-def _scale(bracket: Bracket, kept: Bracket | None) -> str:
+def _scale(wall: OnDevice, bracket: Bracket) -> str:
     proved = []
-    for one in filter(None, (bracket, kept)):
+    for one in filter(None, (bracket, wall.kept)):
         if (most := one.outward((one.proved_passive, None), 4)[0]) is not None:
-            proved.append(f"up to {most:.4g} times this tissue is proved passive{of_which(one)}")
+            proved.append(f"up to {most:.4g} times this tissue is proved passive{wall.of_which(one)}")
     active = bracket.outward((None, bracket.proved_active), 4)[1]
     if not proved and active is None:
         return "neither a proof nor a motion was found for any scale of this tissue"

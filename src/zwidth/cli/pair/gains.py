@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import exit_status
-from zwidth.cli.options import FORCE, IN_FULL
+from zwidth.cli.options import FORCE, IN_FULL, look_for
 from zwidth.cli.output import give_out, print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import question_time
@@ -64,6 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
     from zwidth.data.gains import check_gains, read_gains
 
+    plant = arguments.plant or ""
+    look_for([*arguments.files, *([plant] if plant.endswith(".toml") else [])])
     if arguments.family is None and _of_controllers(arguments.files):
         return _held(arguments)
     plot, save = targets(arguments.plot, arguments.save, arguments.force)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _REGULAR = "a stretch of ten cycles or more in which it shakes, the hand as it was"
 _LAW = "the law that was programmed beside the file (stiffness, virtual damping): its force does not show it"
-_DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate) beside the file: DEVICE"
+_DEVICE = "the device's numbers (mass, damping, Coulomb friction, rate): name it, or its file, behind the log"
 
 
 def diagnose(

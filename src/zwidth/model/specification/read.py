@@ -11,7 +11,7 @@ as typed.  Every parameter can be overridden under its own name; `damping` is th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean, near_file, suggestion
 from zwidth.model.device import Device, Transmission, catalogue
-from zwidth.model.device.catalogue import Range
+from zwidth.model.device.catalogue import DeviceInRange, Range
 from zwidth.model.device.rotary import ROTARY, rotary
 from zwidth.model.environment import Environment
 from zwidth.model.specification.environments import build_environment, option_keys
@@ -119,13 +119,14 @@ def built(device_table: Table, environment: Table, in_range: bool = False) -> Sp
 
     With `in_range` a device of the catalogue may have stated ranges in the place of what nobody published.
     """
-    ranges: Mapping[str, Range] = {}
-    if in_range and "catalogue" in device_table.values:
-        found = _catalogued(device_table, catalogue.in_range)
-        device, ranges = found.device, found.ranges
-    else:
-        device = build_device(device_table)
-    return Specification(device, build_environment(environment, device.motion), ranges)
+    found = _in_range(device_table) if in_range else DeviceInRange(build_device(device_table), {})
+    return Specification(found.device, build_environment(environment, found.device.motion), found.ranges)
+
+
+def _in_range(table: Table) -> DeviceInRange:
+    if "catalogue" in table.values:
+        return _catalogued(table, catalogue.in_range)
+    return DeviceInRange(build_device(table), {})
 
 
 def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
@@ -136,6 +137,11 @@ def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> 
 def specified_device(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Device:
     """The device of tables, with the command line's parameters."""
     return build_device(_device_table(tables, overrides))
+
+
+def specified_in_range(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> DeviceInRange:
+    """The same; one of the catalogue with stated ranges in the place of what nobody published."""
+    return _in_range(_device_table(tables, overrides))
 
 
 def build_device(table: Table) -> Device:
@@ -342,6 +348,13 @@ def _text(source: Path | str) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{name} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
+
+
+def refuse_missing(sources: Iterable[Path | str]) -> None:
+    """Refuse what is neither a device of the catalogue nor there, before one of them is read."""
+    for source in sources:
+        if str(source) not in catalogue.names() and not Path(source).exists():
+            raise InputError(_not_there(Path(source), f'"{_shown(source)}"'))
 
 
 def _not_there(path: Path, name: str) -> str:

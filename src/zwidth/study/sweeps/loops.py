@@ -13,11 +13,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 from zwidth.model.device import Device, Transmission
 from zwidth.model.device.rotary import ROTARY, rotary
 from zwidth.model.environment import OnePole, Window
@@ -91,17 +91,13 @@ def parameter(loop: Loop, typed: str) -> Parameter:
 
 
 def _unknown(typed: str, name: str, known: Iterable[str]) -> str:
-    """What may have been meant, and all that can be varied."""
+    """What may have been meant, or all that can be varied."""
     within = [one for one in known if one.startswith(f"{name}.")]
     if within:
         return f"{quoted(typed)} is no number of its own; what can be varied of it: {', '.join(within)}"
     same = [one for one in known if one.rpartition(".")[2] == name]
-    near = same or get_close_matches(name[:60], known, n=1)
-    meant = f"; did you mean {' or '.join(quoted(one) for one in near)}?" if near else "."
-    return (
-        f"there is no number {quoted(typed)} to vary in this loop{meant} What can be varied: "
-        f"{', '.join(sorted(known))}"
-    )
+    hint = f"did you mean {' or '.join(map(quoted, same))}?" if same else suggestion(name, sorted(known))
+    return f"there is no number {quoted(typed)} to vary in this loop; {hint}"
 
 
 def changed(loop: Loop, values: Mapping[Parameter, float]) -> Loop:

@@ -184,7 +184,7 @@ def _beyond(seen: PairEvidence, viscous_share: float, dry_share: float) -> dict[
 
 
 _REGULAR = "a stretch of ten cycles or more in which both arms shake, the hands as they were"
-_DEVICE = "the numbers of both arms (damping, Coulomb friction, rate) beside the file: DEVICE"
+_DEVICE = "the numbers of both arms (damping, Coulomb friction, rate): name them, or files, behind the log"
 _FORCES = "of both arms the force that is commanded and the motor's own, at every sample of the loop"
 _SLOW = "the same at a smaller swing: here a motor's force changes no faster than {rate}, and cannot follow"
 _PLAIN = "both arms with no force but the coupling's: without gravity compensation, away from stops"

@@ -93,9 +93,10 @@ def too_little(log: Log) -> str:
     pilot = list(_first(pieces(log)))
     strokes = sum(p.strokes.first.size for p in pilot)
     seconds = sum(p.position.size for p in pilot) * log.sample_period
+    counted = f"{strokes} stroke{'' if strokes == 1 else 's'}"
     return (
-        f"{log.source}: the motion shows too little to tell mass, damping and friction apart: {strokes} "
-        f"strokes in {seconds:.3g} s, too few of them long enough, or all too much alike; move to and fro "
+        f"{log.source}: the motion shows too little to tell mass, damping and friction apart: {counted} "
+        f"in {seconds:.3g} s, too few of them long enough, or all too much alike; move to and fro "
         "for a minute, over most of the workspace, slowly and quickly, and do not rest"
     )
 

@@ -19,18 +19,19 @@ from zwidth.data.identification.device.moments import COLUMNS, PAIRS, REGRESSORS
 from zwidth.data.logs import Finding
 from zwidth.native.compiled import Array
 from zwidth.quantity.spoken import spoken
+from zwidth.quantity.text import unit_text
 
 _UNITS = {
-    "mass": ("kg", "kg m²"),
-    "damping": ("N s/m", "N m s/rad"),
-    "coulomb_friction": ("N", "N m"),
-    "spring": ("N/m", "N m/rad"),
-    "stiffness": ("N/m", "N m/rad"),
-    "quadratic": ("N s²/m²", "N m s²/rad²"),
+    "mass": ("kg", "kg*m^2"),
+    "damping": ("N*s/m", "N*m*s/rad"),
+    "coulomb_friction": ("N", "N*m"),
+    "spring": ("N/m", "N*m/rad"),
+    "stiffness": ("N/m", "N*m/rad"),
+    "quadratic": ("N*s^2/m^2", "N*m*s^2/rad^2"),
     "force_lag": ("s", "s"),
-    "asymmetry": ("N s/m", "N m s/rad"),
-    "quadratic_asymmetry": ("N s²/m²", "N m s²/rad²"),
-    "slow": ("N", "N m"),
+    "asymmetry": ("N*s/m", "N*m*s/rad"),
+    "quadratic_asymmetry": ("N*s^2/m^2", "N*m*s^2/rad^2"),
+    "slow": ("N", "N*m"),
 }
 """Of each parameter, linear and rotary."""
 
@@ -74,7 +75,7 @@ class Estimate(NamedTuple):
     def __str__(self) -> str:
         factor, unit = spoken(self.unit)
         low, high = (factor * end for end in self.interval())
-        return f"{factor * self.value:.4g} {unit} (95 %: {low:.4g} to {high:.4g})"
+        return f"{factor * self.value:.4g} {unit_text(unit)} (95 %: {low:.4g} to {high:.4g})"
 
 
 def unit_of(parameter: str, motion: str) -> str:

@@ -14,7 +14,7 @@ from zwidth.data.identification.device.two_masses import TwoMasses
 from zwidth.data.logs import Finding, Log
 from zwidth.data.logs.table import Block
 from zwidth.errors import InputError
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import told_quantity, unit_text
 
 _SEEN = {
     "slow": "more friction at rest than f_c, as of lubricated contacts (Stribeck),",
@@ -94,7 +94,8 @@ def _model(
     full, viscous = found.regression(whole), found.regression(whole[:-1])
     if full is None or viscous is None:
         return
-    stiffness, damping, force = (unit_of(n, found.motion) for n in ("spring", "damping", "coulomb_friction"))
+    named = ("spring", "damping", "coulomb_friction")
+    stiffness, damping, force = (unit_text(unit_of(name, found.motion)) for name in named)
     limits = [f"{2 * fit.value('damping') / period:.4g} {stiffness}" for fit in (viscous, full)]
     if "coulomb_friction" not in names:
         if found.sees(names, "coulomb_friction"):
@@ -164,7 +165,7 @@ def refuse_impossible(
 def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[str]) -> str:
     """What to type, and how the data would look then."""
     words = " and ".join(name.replace("_", " ") for name in channels)
-    right = " and ".join(f"{name} {found[name].value:.4g} {found[name].unit}" for name in below)
+    right = " and ".join(f"{name} {found[name].value:.4g} {unit_text(found[name].unit)}" for name in below)
     typed = " and ".join(f'scale={{"{name}": "-1"}}' for name in channels)
     other = ""
     if channels == log.channels:

@@ -132,14 +132,12 @@ class MeasurementPlan(Shown):
 
 def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     rotary = plan.guess.motion == "rotary"
-    force = "N m" if rotary else "N"
     symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
-    known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
-    yield f"To know {known}; it sets the limit K = {wall}:"
-    yield _reached(plan)
+    known = f"within ±{100 * plan.precision:.3g} % ({100 * plan.confidence:.4g} % confidence)"
+    yield f"To know {symbol}, which sets the limit K = {wall}, {known}:"
     yield (
-        "1. Motor off. Hold the handle by the load cell and by nothing else; "
-        f"up to {plan.force:.2g} {force} will act."
+        "1. Motor off. Hold the handle by the load cell and by nothing else; up to "
+        f"{told_quantity(plan.force, 'force', plan.guess.motion, 2)} will act."
     )
     yield "2. Let go, set the zero of the load cell, start to record."
     for n, (stroke, share) in enumerate(zip(plan.strokes, plan.shares, strict=True), start=3):
@@ -150,6 +148,7 @@ def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     )
     runs = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
     yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
+    yield _reached(plan)
     if plan.apart is not None:
         yield from _each_side(plan, plan.apart)
 
@@ -281,7 +280,10 @@ def _positive(name: str, value: RealLike, quantity: str) -> float:
 
 def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
     if device.mass is None:
-        raise InputError("the guess has no mass: a rough one is enough, a kitchen scale will do")
+        told = "inertia: a rough one is enough, for example --inertia '0.01 kg*m^2'"
+        if device.motion == "linear":
+            told = "mass: a rough one is enough, for example --mass '0.1 kg'; a kitchen scale will do"
+        raise InputError(f"the guess has no {told}")
     for name in ("damping", "coulomb_friction"):
         if not float(device.exact(name)) > 0:
             raise InputError(

@@ -154,7 +154,7 @@ def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[
 
 
 def _row(symbol: str, name: str, value: float, low: float, high: float, unit: str) -> Row:
-    factor, told = spoken(unit.replace(" ", "*"))
+    factor, told = spoken(unit)
     interval = f"{in_a_table(factor * low)} … {in_a_table(factor * high)}"
     return Row(symbol, name, in_a_table(factor * value), interval, unit_text(told))
 
@@ -366,7 +366,7 @@ def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) ->
     low, high = estimate.interval(confidence)
     if low > 0:
         return "lower bounds of friction by speed leave none above the damping; slower strokes would tell"
-    factor, unit = spoken(estimate.unit.replace(" ", "*"))
+    factor, unit = spoken(estimate.unit)
     ends_ = f"{factor * low:.2g} … {factor * high:.2g} {unit_text(unit)}"
     return f"{what} is known only to {ends_}, {percent(confidence)}; {more} would tell"
 

@@ -80,10 +80,12 @@ class TissueTest(Documented):
             " where there is no bound",
         ),
         (
-            "check, largest_gain, check_of_intervals",
+            "check, largest_gain, check_of_intervals, ranges",
             "with a device: the verdict on the tissue; `proved_passive` and `proved_active`, times "
-            "the tissue, of a `hand`, and what more is proved while contact is kept, else null; the outcome "
-            "for all that the 95 % intervals allow, null where it was not asked",
+            "the tissue, of a `hand`, what more is proved while contact is kept, else null, and of a device "
+            "with intervals by contact whether that is so for every value, else at their worst ends; the "
+            "outcome for all that the 95 % intervals allow, null where it was not asked; of a device of the "
+            "catalogue what holds over its stated ranges, as of `zwidth check`",
         ),
     )
 
