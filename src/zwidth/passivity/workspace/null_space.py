@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm, PlanarChain
+from zwidth.model.arms.arm import in_si
 from zwidth.model.arms.joints import as_matrix, largest_scale
 from zwidth.model.arms.null_space import Loop, NullSpaceSpring, fast_motion, moving, slow_loop, task_jacobian
 from zwidth.model.arms.wall import MatrixWall
@@ -222,7 +223,7 @@ def null_space(
     rate: RealLike,
     stiffness: RealLike,
     damping: RealLike = 0,
-    rest: Mapping[str, float] | Sequence[float] | None = None,
+    rest: Mapping[str, float | str] | Sequence[float | str] | None = None,
     regularization: float = 0,
     delay: RealLike = 0,
     within: RealLike | None = None,
@@ -292,12 +293,10 @@ def _not_negative(value: RealLike, unit: str, name: str) -> float:
 
 
 def _rest(
-    arm: DescribedArm | PlanarChain, given: Mapping[str, float] | Sequence[float] | None
+    arm: DescribedArm | PlanarChain, given: Mapping[str, float | str] | Sequence[float | str] | None
 ) -> tuple[float, ...]:
     """q_d, inside the ranges."""
-    names = [f"q{i + 1}" for i in range(arm.joint_count)]
-    if isinstance(arm, DescribedArm):
-        names = list(arm.joint_names)
+    names = arm.joint_names
     if given is not None and not isinstance(given, Mapping):
         if len(given) != len(names):
             raise InputError(f"the null-space rest has a value for each of {len(names)} joints")
@@ -306,10 +305,11 @@ def _rest(
     for name, value in (given or {}).items():
         if name not in values:
             raise InputError(f"null-space rest: there is no joint {name!r}; there are {', '.join(names)}")
-        low, high = arm.joint_range[names.index(name)]
-        if not low <= value <= high:
-            raise InputError(f"null-space rest: {name} can be from {low:g} to {high:g}, got {value:g}")
-        values[name] = float(value)
+        place = names.index(name)
+        low, high = arm.joint_range[place]
+        values[name] = at = in_si(value, "m" if arm.sliding[place] else "rad", f"null-space rest of {name}")
+        if not low <= at <= high:
+            raise InputError(f"null-space rest: {name} can be from {low:g} to {high:g}, got {at:g}")
     return tuple(values.values())
 
 

@@ -156,7 +156,7 @@ class PostureMap(PassivityAnswer):
             yield "virtual damping", self._damping(self.damping_factor)
         if self.encoder_factor is not None:
             yield "encoder steps", self._steps(self.encoder_factor)
-        yield "worst posture", ", ".join(f"{value:.3g}" for value in self.worst)
+        yield "worst posture", self.question.arm.at(self.worst, 3)
         if self.motion is not None:
             often = shown(self.question.rate / len(self.motion.joints), "Hz")
             taken = shown(-self.motion.energy, "J")

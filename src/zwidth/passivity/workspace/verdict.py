@@ -55,6 +55,7 @@ class Workspace(PassivityAnswer):
             '`"undecided"`; in words',
         ),
         ("arm, wall", "what was asked about; K and B as matrices"),
+        ("joint_names", "in the order of every list of joints"),
         ("joint_damping_source", "of damping that comes from a description: what is to be known of it"),
         (
             "joint_damping_N_m_s_rad",
@@ -217,7 +218,6 @@ class Workspace(PassivityAnswer):
         return {
             **arm_document(self.arm),
             **super().numbers(),
-            "joint_damping_N_m_s_rad": np.asarray(self.arm.damping).tolist(),
             "wall": wall_document(self.wall, self.coordinates, turns),
             "largest_forces_N": list(self.largest_forces[:1]),
             "largest_moments_N_m": list(self.largest_forces[1:]),
@@ -240,11 +240,13 @@ def between(arm: Arm) -> Transmission:
 
 
 def arm_document(arm: Arm) -> dict[str, Any]:
-    """Its name, where a description's damping is from, and of joints that give way what motors feel."""
+    """Its name, its joints and their damping, and of joints that give way what motors feel."""
     source = arm.damping_source if isinstance(arm, DescribedArm) else ""
     felt = np.asarray(arm.at_motors.damping).tolist() if arm.transmissions else None
     return {
         "arm": arm.name,
+        "joint_names": list(arm.joint_names),
+        "joint_damping_N_m_s_rad": np.asarray(arm.damping).tolist(),
         **({"joint_damping_source": source} if source else {}),
         **({"joint_damping_that_motors_feel_N_m_s_rad": felt} if felt else {}),
     }
