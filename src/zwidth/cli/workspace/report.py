@@ -24,9 +24,6 @@ _FEW = 3
 _MAPPED = 2
 """Joints of a map of cells."""
 
-_SHOWN = 1e-6
-"""Of the sum: what one joint gets less than this is the room for rounding."""
-
 
 def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[str] = ()) -> None:
     """Print the verdict and what to change on standard output."""
@@ -42,8 +39,12 @@ def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[s
             section(out, "assumes", items(space.assumptions, "dim"))
             return
         first = [row for row in _numbers(space) if row[0] in _FIRST]
-        changes = islice(_changes(space), _FEW)  # each of them is a proof: no more than are shown
-        do = [("or" if place else "change", f"{name}: {text}") for place, (name, text) in enumerate(changes)]
+        told = any(advice.kind == "change" for advice in space.advice)  # the first, by the claim
+        changes = islice(_changes(space), int(told), _FEW)  # each of them is a proof: no more than are shown
+        do = [
+            ("or" if told or place else "change", f"{name}: {text}")
+            for place, (name, text) in enumerate(changes)
+        ]
         arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
         if len(getattr(space.arm, "joint_range", ())) > _MAPPED and hasattr(space.arm, "frame"):
             arm.append(("all joints", "--postures 20000 asks of all of them over their ranges"))
@@ -121,15 +122,13 @@ def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
         return
     if 0 < space.stiffness_factor < inf:
         yield "wall", _softer(space)
+    from zwidth.passivity.workspace.verdict import told_additions
+
     enough, fails = space.added.least
     total, too_little = sum(enough), sum(fails)
-    parts = [
-        f"{_enough(addition)} more damping in {joint}"
-        for joint, addition in zip(space.arm.joint_names, enough, strict=True)
-        if addition > _SHOWN * total
-    ]
-    together = f", together {_enough(total)}" if parts[1:] else ""
-    yield "least in all", ", ".join(parts) + together + _too_little(too_little)
+    parts = told_additions(space.arm, enough)
+    together = f", together {_enough(total)}" if ", " in parts else ""
+    yield "least in all", f"more damping, {parts}{together}{_too_little(too_little)}"
     enough, fails = space.added.to_all
     yield "all joints", f"{_enough(enough[0])} more damping in each{_too_little(fails[0])}"
     for joint, (enough, fails) in enumerate(space.added.alone):
@@ -140,8 +139,7 @@ def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
 
 def _softer(space: Workspace) -> str:
     """How stiff a wall is proved, and beyond what a point of the map fails."""
-    fails, k = space.stiffness_factor, space.largest_stiffness
-    proved = space.added.stiffest(fails)
+    fails, k, proved = space.stiffness_factor, space.largest_stiffness, space.proved_softer
     most = proved or fails
     if k is None:
         text = f"its stiffness times {outward_decimal(most, False):.4g}, and no more"

@@ -70,6 +70,11 @@ class DescribedArm(Arm):
         return self.model.names
 
     @property
+    def locked(self) -> tuple[str, ...]:
+        """Joints without damping that are held, in words."""
+        return self.model.fixed
+
+    @property
     def follows(self) -> bool:
         """Whether joints between base and hand are not those of the arm one for one, in their order."""
         own = [joint.coordinate for joint in self._path()]
@@ -117,7 +122,7 @@ class DescribedArm(Arm):
         ]
         rates, between = self._rates()
         change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
-        return Sites(axes, q, positions, jacobians, change, "; ".join([*words, *self.model.fixed]))
+        return Sites(axes, q, positions, jacobians, change, "; ".join([*words, *self.locked]))
 
     def placed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
         """Position and Jacobian of `sites` at any joints (…, m): in pose of every rest, or of `rest`."""

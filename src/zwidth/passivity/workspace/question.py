@@ -78,8 +78,8 @@ class Question:
             held_torques = " beyond what held torques ask for" if held else ""
             raise InputError(
                 f"no damping is left in {bare}{held_torques}, and an arm with more joints than the hand has "
-                "coordinates needs some in each: give more, or hold the joint by its name (--hold, hold=): "
-                "without damping it is then locked"
+                "coordinates needs some in each: give more, or, of a description, hold the joint by its name "
+                "(--hold, hold=), and it is taken as locked"
             )
         return damping
 
