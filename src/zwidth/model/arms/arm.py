@@ -21,7 +21,7 @@ import numpy.typing as npt
 from zwidth.errors import InputError
 from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.exact import ends
-from zwidth.quantity.units import parse_number
+from zwidth.quantity.units import in_si
 from zwidth.showing import one_line
 
 Array = npt.NDArray[np.float64]
@@ -257,11 +257,6 @@ def _listed(given: Any) -> npt.NDArray[np.object_] | None:
         return np.atleast_1d(np.asarray(given, dtype=object))
     except ValueError:
         return None
-
-
-def in_si(value: Any, unit: str, what: str) -> float:
-    """A number, or a text with its unit."""
-    return float(parse_number(value, unit, what))
 
 
 # What viscous friction takes out of the joints: the power q̇ᵀ δ_m q̇ ≥ 0 of the torque −δ_m q̇.

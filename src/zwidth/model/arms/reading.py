@@ -18,7 +18,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
-from zwidth.model.arms.arm import Arm, Damping, in_si, joint_damping, joint_numbers
+from zwidth.model.arms.arm import Arm, Damping, joint_damping, joint_numbers
 from zwidth.model.arms.chain import PlanarChain
 from zwidth.model.arms.described import MOST_MAPPED, DescribedArm, PosedArm
 from zwidth.model.arms.formats import read_mjcf, read_urdf
@@ -26,6 +26,7 @@ from zwidth.model.arms.joints import as_matrix
 from zwidth.model.arms.legs import Leg, LeggedArm
 from zwidth.model.arms.mechanism import Coordinate, Frame, Mechanism, parsed
 from zwidth.model.device.transmission import Transmission
+from zwidth.quantity.units import in_si
 
 _ENDINGS = (".urdf", ".xml", ".mjcf")
 _FAR = 1e3

@@ -22,7 +22,6 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm, PlanarChain
-from zwidth.model.arms.arm import in_si
 from zwidth.model.arms.joints import as_matrix, largest_scale
 from zwidth.model.arms.null_space import Loop, NullSpaceSpring, fast_motion, moving, slow_loop, task_jacobian
 from zwidth.model.arms.wall import MatrixWall
@@ -42,7 +41,7 @@ from zwidth.passivity.workspace.verdict import (
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
-from zwidth.quantity.units import parse_number
+from zwidth.quantity.units import in_si
 
 Array = npt.NDArray[np.float64]
 
@@ -286,7 +285,7 @@ def null_space(
 
 
 def _not_negative(value: RealLike, unit: str, name: str) -> float:
-    number = float(parse_number(value, unit, name))
+    number = in_si(value, unit, name)
     if number < 0:
         raise InputError(f"{name} must be ≥ 0 {unit}, got {number:g}: a spring pulls back, a damper brakes")
     return number
