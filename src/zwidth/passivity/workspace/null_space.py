@@ -123,6 +123,7 @@ class NullSpace(PassivityAnswer):
             return (
                 f"{' '.join(self._motions())} These are hands that hold the links, such as one at the elbow "
                 "and one at the end; of a hand at the end alone nothing is said."
+                + ("" if self.slow is None else " Leave the spring out, or take a null-space damper alone.")
             )
         more = f" {OF_JOINTS_THAT_GIVE_WAY}" if self.question.arm.transmissions else ""
         if self.within is not None and self.certificate is not None:
@@ -184,10 +185,10 @@ class NullSpace(PassivityAnswer):
         alone = f"at the rest it may be {self.wall_factor:.4g} times as stiff"
         yield "wall alone", alone if self.wall_factor else "its virtual damping is too much for the joints"
         if self.slow is not None:
-            text = "leave the spring out, or take a null-space damper alone; keep the joints near its rest; "
             yield (
-                "change",
-                text + "or bound what it gives by an energy tank (Dietrich, Ott & Stramigioli 2016)",
+                "or",
+                "keep the joints near its rest; or bound what it gives by an energy tank (Dietrich, Ott & "
+                "Stramigioli 2016)",
             )
 
     def _covers(self) -> str:
