@@ -61,7 +61,7 @@ LOOPS = {
     "between corners": (
         f"{PADDLE} '200 .. 400'",
         3,
-        "Proved would be: lower the st",
+        "For a proof, lower the st",
     ),
     "pair": ("pair arms.toml", 1, "each time it is made: lower the stiffness from 500 N/m to "),
 }

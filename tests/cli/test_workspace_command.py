@@ -82,7 +82,7 @@ COUNTED = (
 def test_encoder_steps_are_counted_up_to_a_force(run):
     words = run(f"{COUNTED} -o proof.json --all").words
     assert "for wall forces up to 28.6 N, proved. Encoder steps are counted" in words
-    assert re.search(r"5.774 mN·m, 2.954 mN·m in joint 1, 2, and .* more for each newton", words)
+    assert re.search(r"5.774 mN·m, 2.954 mN·m in q1, q2, and .* more for each newton", words)
     covered = r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out"
     assert re.search(covered, words)
     run("verify proof.json").says("its encoder steps counted: force and Jacobian are those of the readings")
@@ -194,9 +194,9 @@ def test_the_least_damping_is_shown(run):
     words = run(f"{HAPLY} --stiffness 800 --all", 1).words
     assert "what to change" in words
     assert "all joints" in words
-    assert re.search(r"least in all .* in joint 1, .* in joint 2, together", words)
+    assert re.search(r"least in all .* in q1, .* in q2, together", words)
     words = run("workspace two-link --joint-damping 0.02,0.012 --stiffness 800 --all", 1).words
-    assert re.search(r"least in all [0-9.]+ m?N·m·s/rad more damping in joint 1; less than [0-9.]+", words)
+    assert re.search(r"least in all [0-9.]+ m?N·m·s/rad more damping in q1; less than [0-9.]+", words)
 
 
 def test_a_wall_in_pose_is_reported_and_drawn(run):
@@ -232,7 +232,7 @@ def test_joints_that_damp_each_other_come_from_a_file(run):
         (
             "[joints]\ndamping = [[0.02, 0.005], 0.01]",
             "",
-            "toml: [joints]: damping is one number for each",
+            "damping: one number for each joint, or a square matrix",
         ),
         ("[joints]\ndamping = 0.02", "", "joints.toml: [joints]: damping is a list"),
         ("[joints]\nfriction = [0.02, 0.01]", "", "friction"),
@@ -269,3 +269,46 @@ def test_a_hand_on_the_axis_of_a_joint_is_told(run, frame, said):
     ).words
     assert f"hand at {frame}{said}" in words
     assert ("cannot move" in words) == (frame == "lower")
+
+
+def gripper(fingers: int) -> str:
+    """A URDF of four damped joints, and fingers without damping at the last."""
+    joint = (
+        '<joint name="{0}" type="{3}"><parent link="{1}"/><child link="{2}"/><origin xyz="0.1 0 0"/>'
+        '<axis xyz="{4}"/><limit lower="-0.5" upper="0.7" effort="9" velocity="1"/>{5}</joint>'
+    )
+    names, axes = ("base", "pan", "lift", "elbow", "wrist"), ("0 0 1", "0 1 0", "0 1 0", "1 0 0")
+    moves = zip(names, names[1:], axes, strict=False)
+    parts = [
+        joint.format(f"{to}_joint", of, to, "revolute", axis, '<dynamics damping="0.8"/>')
+        for of, to, axis in moves
+    ]
+    each = ["left", "right"][:fingers]
+    parts += [joint.format(f"{side}_joint", "wrist", side, "prismatic", "0 1 0", "") for side in each]
+    links = "".join(f'<link name="{name}"/>' for name in (*names, *each))
+    return f'<robot name="arm">{links}{"".join(parts)}</robot>'
+
+
+@pytest.mark.parametrize("more", ["", " --postures 300"])
+def test_a_finger_without_damping_is_named_and_what_is_typed_works(run, refused, more):
+    """It is held, which locks it, or left out; the same numbers as with the hand where it is locked."""
+    Path("arm.urdf").write_text(gripper(1), encoding="utf-8")
+    line = f"workspace arm.urdf --stiffness 100{more}"
+    message = refused(line)
+    assert "arm.urdf gives left_joint no damping" in message
+    typed = re.findall(r"--(?:hold|frame) [\w=.,]+", message)
+    assert typed == ["--hold left_joint=0.1", "--frame wrist"]
+    status = 3 if more else 0
+    found = [run(f"{line} {option} --json", status).json for option in typed]
+    assert [len(each["joint_damping_N_m_s_rad"]) for each in found] == [4, 4]
+    assert found[0]["largest_stiffness_N_per_m"] < found[1]["largest_stiffness_N_per_m"]
+    assert more or "left_joint locked at 0.1 m" in run(f"{line} {typed[0]}").words
+    assert "no damping is left in left_joint" in refused(f"{line} --joint-damping 1,1,1,1,0")
+    assert "pan_joint, lift_joint" in refused(f"{line} --joint-damping 1,1,1,1")
+    run(f"{line} --joint-damping '1,1,1,1 N*m*s/rad,20 N*s/m'", status)
+
+
+def test_before_two_fingers_the_frame_is_named(run, refused):
+    Path("arm.urdf").write_text(gripper(2), encoding="utf-8")
+    message = refused("workspace arm.urdf --stiffness 100")
+    run(f"workspace arm.urdf --stiffness 100 {re.findall('--frame [a-z]+', message)[-1]}")

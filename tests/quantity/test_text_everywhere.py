@@ -13,6 +13,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import zwidth as zw
+from zwidth.model.arms.arm import JOINT_UNITS
 from zwidth.quantity.parameter import Parametric, parameters_of
 
 PADDLE, WALL = zw.catalogue.device("haptic-paddle"), zw.Wall(stiffness=300)
@@ -23,7 +24,7 @@ PORT = zw.links.WavePort(PADDLE)
 FINGER = zw.operators.Finger()
 
 WITHOUT_UNIT = {
-    *("count", "counts", "counts_per_turn", "current_unit", "dpi", "encoder_phase", "torque_per_current"),
+    *("counts", "counts_per_turn", "dpi", "encoder_phase"),
     *(
         "confidence",
         "damping_ratio",
@@ -42,8 +43,8 @@ WITHOUT_UNIT = {
 
 OTHERWISE = {
     "Interval": "numbers of no quantity",
-    "built_in read_arm": "one number for each joint, in SI",
-    "Dynamixel Feetech Hapkit HaplyMotor HaplyPantograph Moteus ODrive": "settings, which `device_at` reads",
+    "built_in read_arm": "one number for each joint, tested below",
+    "HaplyPantograph": "numbers of its joints",
     "borne_impedance check_controllers check_gains passive_gains read_gains": "tests/gains reads text",
     "identify_finger cut_scene PartRun PortRun Peer": "what they need is made in their own tests",
     "stiffness_over_postures": "reads rate and delay as `workspace` does",
@@ -58,7 +59,8 @@ USUAL = {
     "damping": "0.1 N*s/m", "delay": "1 ms", "device": PADDLE, "displacement": "1 mm", "duration": "5 ms",
     "energies": np.zeros(3), "environment": WALL, "fast": "1 s", "fastest": "1 m/s", "first": True,
     "curvature": 1.0, "force": np.sin(40 * TIME),
-    "largest_force": "1 N", "theta": 0.1,
+    "largest_force": "1 N", "theta": 0.1, "count": "1 mm", "counts": 1000, "full_duty_torque": "1 N*m",
+    "torque_per_current": "1 N*m/A",
     "force_noise": "10 mN", "frequencies": [10.0], "greatest": "0.2 N/mm",
     "guess": PADDLE, "hand": FINGER, "initial": ("200 N/m", "200 N/m", "20 N*s/m"), "inputs": np.zeros(2),
     "least": "0 N/m", "line": "line", "memory": "1 ms", "operator": FINGER, "penetration": "1 mm",
@@ -175,3 +177,16 @@ def test_fields_of_classes_read_texts() -> None:
                     field.read("3 kg*s", name)
     assert len(classes) > 60
     assert read > 150
+
+
+def test_numbers_of_joints_read_texts() -> None:
+    """One for each joint, or one for all; a matrix of damping; a wrong unit is refused by joint."""
+    chain = zw.arms.PlanarChain(links=(0.3, 0.25), damping=["20 mN*m*s/rad", 0.01], resolution=("1 deg", 0))
+    assert (chain.damping, chain.resolution) == ((0.02, 0.01), (pytest.approx(np.pi / 180), 0))
+    shared = zw.arms.built_in("two-link", damping=[["20 mN*m*s/rad", 0.005], [0.005, "0.01 N*m*s/rad"]])
+    assert shared.damping == ((0.02, 0.005), (0.005, 0.01))
+    for key, unit in JOINT_UNITS.items():
+        given = {"damping": "1 N*m*s/rad", key: f"3 {unit[0]}"}
+        assert getattr(zw.arms.built_in("two-link", **given), key) == (3, 3)
+        with pytest.raises(zw.InputError, match=f"{key} of q1 is in .*kg"):
+            zw.arms.built_in("two-link", **{**given, key: "3 kg"})

@@ -60,6 +60,7 @@ _LOOP = ("limit", "advice", "required_damping")
 _OF_AN_ARM = (
     "arm",
     "joint_damping",
+    "joint_names",
     "wall",
     "sample_period",
     "delay_samples",

@@ -116,7 +116,7 @@ def with_what_to_do(found: str, advice: Iterable[Advice], outcome: str) -> str:
     first = next((a.text for a in advice if a.to is not None and not a.is_at_limit), "")
     if not first:
         return f"{found}."
-    return f"{found}. Proved would be: {first}." if outcome == "undecided" else f"{found}: {first}."
+    return f"{found}. For a proof, {first}." if outcome == "undecided" else f"{found}: {first}."
 
 
 def _where_it_is(advice: Iterable[Advice]) -> Iterator[str]:
@@ -307,7 +307,8 @@ def _text(knob: Knob, to: float | None, unit: str, kind: Kind, is_alone: bool) -
     near = 4 if digits == 6 and abs(to - knob.current) > 2e-3 * abs(to) else 12
     now, wanted = shown(knob.sign * knob.current, unit, near), shown(knob.sign * to, unit, digits)
     if kind == "change":
-        return f"{'raise' if higher else 'lower'} the {name} from {now} to {wanted}{hands}"
+        verb = "bring" if knob.sign < 0 else "raise" if higher else "lower"  # -3 to -1 is neither to a person
+        return f"{verb} the {name} from {now} to {wanted}{hands}"
     if to == knob.current:
         alone = f"proved where it is, {now}, and for delays of whole samples alone"
         return f"{name} is {alone if is_alone else f'exactly at its limit, {now}'}"

@@ -20,7 +20,7 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _AS_IT_IS = {
     "m": (1.0, inf), "s": (1.0, inf), "m/s": (0.1, inf), "J": (1.0, 1e3), "Hz": (0.0, 1e3),
     "N": (0.01, 1e3), "N*m": (0.01, 1e3), "rad": (0.01, inf), "rad/s": (0.01, inf),
-    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.001, inf),
+    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.01, inf),
 }  # fmt: skip
 """From where to where people say a unit without a prefix: 0.12 N and 300 Hz, and 2.3 mm, 12 kHz."""
 

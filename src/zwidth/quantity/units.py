@@ -67,6 +67,11 @@ def parse_number(value: object, unit: str, what: str) -> Exact:
         raise InputError(f"{_is(what, unit)}: {error}") from None
 
 
+def in_si(value: object, unit: str, what: str) -> float:
+    """The same as a double."""
+    return float(parse_number(value, unit, what))
+
+
 def _parse_text(value: str, unit: str, what: str) -> Exact:
     number, rest = _split(value, unit, what)
     try:

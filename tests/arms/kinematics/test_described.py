@@ -76,8 +76,7 @@ def test_sliding_joints_and_joints_that_are_held(tmp_path):
         assert np.linalg.norm(there - sites.jacobians[place], 2) <= sites.change[place]
     with pytest.raises(zw.InputError, match="no joint 'wrist'"):
         read_arm(path, hold={"wrist": 0})
-    with pytest.raises(zw.InputError, match="3 would move"):
-        read_arm(path, hold={})
+    assert read_arm(path, hold={}).joint_range[2] == (1.3, 1.3)
 
 
 MESH = "<visual><geometry><mesh filename='package://../../none.stl'/></geometry></visual>"
@@ -381,7 +380,9 @@ def test_a_joint_is_held_where_it_can_be(tmp_path, urdf):
         "shoulder from 0.2 to 2.4 rad; elbow held at 2.4 rad"
     )
     for value in (2.4001, 30, float("nan")):
-        with pytest.raises(zw.InputError, match=r"elbow can be from 0.2 to 2.4 rad, got"):
+        with pytest.raises(
+            zw.InputError, match=r"elbow can be from 0.2 to 2.4 rad, got|elbow is in rad: .*, got nan"
+        ):
             read_arm(urdf, hold={"elbow": value})
     rail = tmp_path / "rail.xml"
     rail.write_text(
@@ -391,5 +392,38 @@ def test_a_joint_is_held_where_it_can_be(tmp_path, urdf):
         'range="0 1" damping="0.1"/><geom type="sphere" size="0.1"/></body></body></worldbody></mujoco>'
     )
     with pytest.raises(zw.InputError, match="slides without limits"):
-        read_arm(rail)
-    assert read_arm(rail, hold={"rail": 7}).sites(3).region == "rail held at 7 m; turn from 0 to 1 rad"
+        read_arm(rail, damping=(1, 1))
+    assert read_arm(rail, hold={"rail": 7}).sites(3).region == "turn from 0 to 1 rad; rail locked at 7 m"
+
+
+def test_a_locked_joint_is_a_fixed_one(tmp_path):
+    """Turning and sliding, followed by another: the hand is where it was, without their columns."""
+    links = ("base", "upper", "lower", "tip", "hand", "claw")
+    follow = '<mimic joint="elbow" multiplier="-0.5" offset="0.1"/>' + LIMIT.format(0.1).replace(
+        'damping="0.1"', 'damping="0"'
+    )
+    parts = (
+        _joint("shoulder", "base", "upper", 0.05, extra=LIMIT.format(0.02)),
+        _joint("elbow", "upper", "lower", 0.1, extra=LIMIT.format(0)),
+        _joint("wrist", "lower", "tip", 0.2, extra=follow),
+        _joint("slide", "tip", "hand", 0.3, "prismatic", LIMIT.format(0)),
+        _joint("last", "hand", "claw", 0.15, extra=LIMIT.format(0.04)),
+    )
+    path = robot(tmp_path / "arm.urdf", links, *parts)
+    held = {"elbow": 0.7, "slide": "0.25 m"}
+    full = read_arm(path, damping=(1, 1, 1, 1), coulomb_friction=(1, 2, 3, 4))
+    arm = read_arm(path, hold=held, coulomb_friction=(1, 2, 3, 4), resolution=["1 deg", 0, "1 mm", 0.1])
+    assert (arm.joint_names, arm.damping, arm.coulomb_friction) == (
+        ("shoulder", "last"),
+        (0.02, 0.04),
+        (1, 4),
+    )
+    for q in np.random.default_rng(2).uniform(0.3, 1, (5, 2)):
+        at = (q[0], 0.7, 0.25, q[1])
+        assert arm.forward(q) == pytest.approx(full.forward(at), abs=1e-14)
+        assert arm.jacobian(q) == pytest.approx(full.jacobian(at)[:, [0, 3]], abs=1e-14)
+    assert arm.sites(3).region.endswith("elbow locked at 0.7 rad; slide locked at 0.25 m")
+    space = zw.workspace(arm.replace(resolution=()), zw.Wall(10), rate=1000, points=10)
+    assert space.outcome == "passive"
+    with pytest.raises(zw.InputError, match="gives elbow and slide no damping"):
+        read_arm(path)

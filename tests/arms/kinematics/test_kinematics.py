@@ -141,7 +141,7 @@ def two_links(damping: Any) -> PlanarChain:
         (lambda: two_links([[0.01, 0.002]]), r"is 2 × 2, got the shape \(1, 2\)"),
         (lambda: two_links(np.ones((2, 2, 2))), "is 2 × 2"),
         (lambda: two_links([[0.01, 0.0], [0.01]]), "one number for each joint, or a square matrix"),
-        (lambda: two_links("thick"), "one number for each joint, or a square matrix"),
+        (lambda: two_links("thick"), 'damping of q1 is in N.m.s/rad.*got "thick"'),
         (lambda: two_links([0.01]), "give one for each joint, 2 in all; got 1"),
         (lambda: two_links([0.01, -0.01]), "≥ 0 in every joint"),
     ],
@@ -160,6 +160,7 @@ def test_a_paddle_turns_on_a_circle():
 
 BELT = np.array([[1.0, 0.0], [-0.7, 1.0]])
 """The second motor sits in the base: its belt turns with q₂ − 0.7 q₁."""
+TWO = ("q1", "q2"), (False, False)
 SHARED = BELT.T @ np.diag([0.013, 0.008]) @ BELT
 
 
@@ -174,8 +175,8 @@ def test_a_matrix_is_kept_and_shown():
 
 def test_a_diagonal_matrix_is_one_number_for_each_joint():
     told = (np.diag([0.02, 0.01]), ((0.02, 0), (0, 0.01)), (0.02, 0.01), [0.02, 0.01])
-    assert {joint_damping(damping, 2) for damping in told} == {(0.02, 0.01)}
-    assert joint_damping([[0.3]], 1) == joint_damping(0.3, 1) == (0.3,)
+    assert {joint_damping(damping, *TWO) for damping in told} == {(0.02, 0.01)}
+    assert joint_damping([[0.3]], ["q1"], [False]) == joint_damping(0.3, ["q1"], [False]) == (0.3,)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 7), st.integers(-6, 6))
@@ -186,12 +187,12 @@ def test_shafts_with_friction_give_no_matrix_that_is_refused(seed, joints, power
     scale = 10.0 ** (power * rng.random(joints))
     turned = rng.normal(size=(shafts, joints)) * scale
     damping = turned.T @ np.diag(rng.uniform(0.01, 1, shafts)) @ turned
-    kept = np.array(joint_damping(damping, joints))
+    kept = np.array(joint_damping(damping, ["q"] * joints, [False] * joints))
     assert np.array_equal(kept, kept.T)
     assert np.allclose(kept, damping, rtol=1e-12, atol=0)
 
 
 def test_at_the_bound_it_is_taken():
     """A matrix of which one motion costs nothing: the other side of what is refused."""
-    assert joint_damping([[0.04, 0.06], [0.06, 0.09]], 2) == ((0.04, 0.06), (0.06, 0.09))
-    assert joint_damping([[0.04, 0.06], [0.06, 0.09 * (1 + 1e-9)]], 2)
+    assert joint_damping([[0.04, 0.06], [0.06, 0.09]], *TWO) == ((0.04, 0.06), (0.06, 0.09))
+    assert joint_damping([[0.04, 0.06], [0.06, 0.09 * (1 + 1e-9)]], *TWO)

@@ -357,7 +357,7 @@ def test_where_it_does_not_apply(law, delay):
     assert clamped.claim.startswith("Of a law whose force is clamped no exact condition is known")
     assert clamped.scope.contact == "made and broken"
     assert " N·s/m, the device has 0.2 N·s/m; Coulomb friction of " in clamped.claim
-    assert " N, it has 0.2 N. Proved would be: lower the stiffness from " in clamped.claim
+    assert " N, it has 0.2 N. For a proof, lower the stiffness from " in clamped.claim
 
 
 def test_an_active_clamped_wall_has_a_motion_of_its_own():

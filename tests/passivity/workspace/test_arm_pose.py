@@ -284,5 +284,5 @@ def test_a_wrist_that_no_hand_can_hold_is_not_refuted(tmp_path: Path) -> None:
 
 def test_shows_itself_without_a_stiffness_in_one_unit(tmp_path: Path) -> None:
     space = _space(_arm(tmp_path, 3), zw.arms.MatrixWall.in_pose(10, 0.1), points=5)
-    assert "times this one" in repr(space)
+    assert "times as stiff holds at every point" in repr(space)
     assert len(repr(space)) < 600

@@ -86,14 +86,14 @@ def _described(arguments: argparse.Namespace, joints: Mapping[str, Any]) -> Arm:
     )
 
 
-def by_name(text: str | None, option: str) -> dict[str, float] | None:
+def by_name(text: str | None, option: str) -> dict[str, str] | None:
     """Joints with values, as in wrist=0.2,grip=0."""
     if text is None:
         return None
     pairs = [part.partition("=") for part in text.split(",")]
     if not all(name.strip() and equals for name, equals, _ in pairs):
         raise InputError(f"--{option}: joints and values, as in wrist=0.2,grip=0; got {text[:60]!r}")
-    return {name.strip(): float(parse_number(value.strip(), "1", option)) for name, _, value in pairs}
+    return {name.strip(): value.strip() for name, _, value in pairs}
 
 
 # The joints of `zwidth workspace`: by options, one value for all or one for each, or from a file.
@@ -105,7 +105,9 @@ _JOINT_OPTIONS = (
     ("--joint-resolution", "resolution", "rad", "encoder step of the joints"),
     ("--torque-limit", "torque_limit", "N*m", "largest torque of the motors"),
 )
-_UNITS = {key: unit for _, key, unit, _ in _JOINT_OPTIONS}
+
+
+_KEYS = tuple(key for _, key, _, _ in _JOINT_OPTIONS)
 
 
 JOINTS = {
@@ -113,7 +115,7 @@ JOINTS = {
         f"{option} VALUES": f"{meaning}, one value for all or one for each: 0.001,0.002 [{unit}]"
         for option, _, unit, meaning in _JOINT_OPTIONS
     },
-    "--joints FILE": f"a .toml file whose [joints] has some of {', '.join(_UNITS)}, "
+    "--joints FILE": f"a .toml file whose [joints] has some of {', '.join(_KEYS)}, "
     "transmission; damping may be a matrix",
 }
 """Friction, encoders and motors of the joints."""
@@ -122,8 +124,8 @@ JOINTS = {
 def joints_of(arguments: argparse.Namespace) -> dict[str, Any]:
     """What is given of the joints, a list for each kind; of damping perhaps the rows of a matrix."""
     by_option = {
-        key: [float(parse_number(part.strip(), unit, option[2:])) for part in text.split(",")]
-        for option, key, unit, _ in _JOINT_OPTIONS
+        key: [part.strip() for part in text.split(",")]
+        for option, key, _, _ in _JOINT_OPTIONS
         if (text := getattr(arguments, option[2:].replace("-", "_"))) is not None
     }
     in_file = {} if arguments.joints is None else read_joints(Path(arguments.joints))
@@ -138,11 +140,11 @@ def read_joints(path: Path) -> dict[str, Any]:
     from zwidth.model.specification.values import joint_transmissions
 
     table = read_tables([path], ("joints",))["joints"]
-    table.check_keys((*_UNITS, "transmission"), "joints")
-    with located(table.label):
-        found: dict[str, Any] = {
-            key: _values(entry, key) for key, entry in table.values.items() if key in _UNITS
-        }
+    table.check_keys((*_KEYS, "transmission"), "joints")
+    found: dict[str, Any] = {key: entry for key, entry in table.values.items() if key in _KEYS}
+    for key, entry in found.items():
+        if not isinstance(entry, list):
+            raise InputError(f"{table.label}: {key} is a list, one for each joint; got {str(entry)[:60]}")
     if "transmission" in table.values:
         found["transmission"] = joint_transmissions(table.values["transmission"], table.label)
     return found
@@ -157,6 +159,10 @@ def damping_in_words(arm: Arm) -> str:
     )
 
 
+_FEW = 3
+"""Joints whose damping is told without their names."""
+
+
 def _damping(arm: Arm) -> str:
     import numpy as np
 
@@ -164,20 +170,15 @@ def _damping(arm: Arm) -> str:
     if values.ndim == 2:
         unit = "N·s/m" if all(slides) else "N·m·s/rad" if not any(slides) else "in N, m, s, rad"
         return f"{rows_in_words(values)} {unit}"
-    if len(set(slides)) == 1:
-        return ", ".join(f"{b:.6g}" for b in values) + (" N·s/m" if slides[0] else " N·m·s/rad")
-    each = zip(values, slides, strict=True)
-    return ", ".join(f"{b:.6g} {'N·s/m' if slid else 'N·m·s/rad'}" for b, slid in each)
-
-
-def _values(entry: object, key: str) -> list[Any]:
-    if not isinstance(entry, list):
-        raise InputError(f"{key} is a list, one number for each joint; got {str(entry)[:60]}")
-    if key == "damping" and any(isinstance(row, list) for row in entry):
-        if not all(isinstance(row, list) and len(row) == len(entry) for row in entry):
-            raise InputError("damping is one number for each joint, or a square matrix, [[…, …], […, …]]")
-        return [[float(parse_number(x, _UNITS[key], key)) for x in row] for row in entry]
-    return [float(parse_number(x, _UNITS[key], key)) for x in entry]
+    units = ["N·s/m" if slid else "N·m·s/rad" for slid in slides]
+    if len(set(values)) == len(set(units)) == 1 < len(values):
+        return f"{values[0]:.6g} {units[0]} in each"
+    if len(values) > _FEW:
+        told = zip(arm.joint_names, values, units, strict=True)
+        return ", ".join(f"{name} {b:.6g} {unit}" for name, b, unit in told)
+    if len(set(units)) == 1:
+        return ", ".join(f"{b:.6g}" for b in values) + f" {units[0]}"
+    return ", ".join(f"{b:.6g} {unit}" for b, unit in zip(values, units, strict=True))
 
 
 # The wall of `zwidth workspace`: as stiff in every direction by options, or given by matrices in a file.

@@ -12,7 +12,7 @@ from zwidth.quantity.text import outward_decimal, shown, shown_at_least, shown_a
 
 if TYPE_CHECKING:
     from zwidth.data.gains import BorneImpedance
-    from zwidth.model.arms import ArmMotion, EncoderSteps
+    from zwidth.model.arms import Arm, ArmMotion, EncoderSteps
     from zwidth.passivity.workspace import NullSpace, PostureMap, Workspace
 
 
@@ -23,9 +23,6 @@ _FEW = 3
 
 _MAPPED = 2
 """Joints of a map of cells."""
-
-_SHOWN = 1e-6
-"""Of the sum: what one joint gets less than this is the room for rounding."""
 
 
 def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[str] = ()) -> None:
@@ -42,8 +39,12 @@ def print_workspace(space: Workspace, in_full: bool = False, without: Sequence[s
             section(out, "assumes", items(space.assumptions, "dim"))
             return
         first = [row for row in _numbers(space) if row[0] in _FIRST]
-        changes = islice(_changes(space), _FEW)  # each of them is a proof: no more than are shown
-        do = [("or" if place else "change", f"{name}: {text}") for place, (name, text) in enumerate(changes)]
+        told = any(advice.kind == "change" for advice in space.advice)  # the first, by the claim
+        changes = islice(_changes(space), int(told), _FEW)  # each of them is a proof: no more than are shown
+        do = [
+            ("or" if told or place else "change", f"{name}: {text}")
+            for place, (name, text) in enumerate(changes)
+        ]
         arm = [row for row in _asked(space) if row[0] not in _IN_SCOPE]
         if len(getattr(space.arm, "joint_range", ())) > _MAPPED and hasattr(space.arm, "frame"):
             arm.append(("all joints", "--postures 20000 asks of all of them over their ranges"))
@@ -69,7 +70,7 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
         everywhere = shown_at_most(space.largest_stiffness, "N/m")
         yield "largest stiffness", f"{everywhere} at every point of the map, {best} at the best"
     if motion is not None:
-        yield "motion", _motion(motion)
+        yield "motion", _motion(motion, space.arm)
     if "resolution" in data:
         turned = ""
         if "rotational_resolution" in data:
@@ -89,11 +90,11 @@ def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
         yield "delay", f"{shown(space.delay_samples * space.sample_period, 's')}, {samples}"
 
 
-def _motion(motion: ArmMotion) -> str:
-    middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
+def _motion(motion: ArmMotion, arm: Arm) -> str:
+    middle = arm.at(motion.joints.mean(axis=0))
     gain, force = shown(-motion.energy, "J"), shown(motion.largest_force, "N")
     read = "" if motion.encoder == "ideal" else ", at the readings of the encoders"
-    around = f"{len(motion.joints)} samples round the joints at {middle}"
+    around = f"{len(motion.joints)} samples round {middle}"
     held = "" if motion.imposed_by == "end" else ", by hands that hold the links"
     return f"{around} take {gain} out, forces up to {force}{read}{held}"
 
@@ -103,9 +104,10 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     own = space.arm.coulomb_friction
     enough = ", ".join(shown(f, "N*m") for f in steps.friction)
     more = ", ".join(shown(f, "N*m") for f in steps.friction_per_force)
-    has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
+    has = f"it has {', '.join(shown(float(f), 'N*m') for f in own)}" if own else "it has none that is known"
     more = f"{more} more for each newton of the wall"
-    yield "Coulomb friction", f"{enough} in joint {_joints(space)}, and {more}, cover the steps; {has}"
+    joints = ", ".join(space.arm.joint_names)
+    yield "Coulomb friction", f"{enough} in {joints}, and {more}, cover the steps; {has}"
     from zwidth.model.arms.encoders import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
@@ -115,36 +117,29 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     yield "encoder steps", covered + (known if own else "")
 
 
-def _joints(space: Workspace) -> str:
-    return ", ".join(str(joint) for joint in range(1, space.arm.joint_count + 1))
-
-
 def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
     if not any(space.added.to_all.enough):
         return
     if 0 < space.stiffness_factor < inf:
         yield "wall", _softer(space)
+    from zwidth.passivity.workspace.verdict import told_additions
+
     enough, fails = space.added.least
     total, too_little = sum(enough), sum(fails)
-    parts = [
-        f"{_enough(addition)} more damping in joint {joint}"
-        for joint, addition in enumerate(enough, start=1)
-        if addition > _SHOWN * total
-    ]
-    together = f", together {_enough(total)}" if parts[1:] else ""
-    yield "least in all", ", ".join(parts) + together + _too_little(too_little)
+    parts = told_additions(space.arm, enough)
+    together = f", together {_enough(total)}" if ", " in parts else ""
+    yield "least in all", f"more damping, {parts}{together}{_too_little(too_little)}"
     enough, fails = space.added.to_all
     yield "all joints", f"{_enough(enough[0])} more damping in each{_too_little(fails[0])}"
     for joint, (enough, fails) in enumerate(space.added.alone):
         if isfinite(enough[joint]):
             text = f"{_enough(enough[joint])} more damping{_too_little(fails[joint])}"
-            yield f"joint {joint + 1} alone", text
+            yield f"{space.arm.joint_names[joint]} alone", text
 
 
 def _softer(space: Workspace) -> str:
     """How stiff a wall is proved, and beyond what a point of the map fails."""
-    fails, k = space.stiffness_factor, space.largest_stiffness
-    proved = space.added.stiffest(fails)
+    fails, k, proved = space.stiffness_factor, space.largest_stiffness, space.proved_softer
     most = proved or fails
     if k is None:
         text = f"its stiffness times {outward_decimal(most, False):.4g}, and no more"
@@ -177,7 +172,7 @@ def print_postures(
 def print_null_space(found: NullSpace, in_full: bool, without: Sequence[str]) -> None:
     """Print what is found of a wall and a null-space spring together."""
     spring = found.spring
-    rest = ", ".join(f"{value:.3g}" for value in spring.rest)
+    rest = found.question.arm.at(spring.rest, 3)
     told = (
         f"{shown(spring.stiffness, 'N*m/rad')}, {shown(spring.damping, 'N*m*s/rad')}, at rest at {rest}; "
         f"λ = {spring.regularization:g}; its torque is computed once a sample and held"

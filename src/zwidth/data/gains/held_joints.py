@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import inf
 from typing import Any, ClassVar, NamedTuple
 
 from zwidth.data.gains.controllers import Controllers, JointLaw
@@ -14,6 +15,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import PulseTransferFunction
 from zwidth.passivity.check import check
+from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.result import evidence_of, least
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.passivity.verdict import Verdict
@@ -74,12 +76,11 @@ class HeldJoints(Documented):
     @property
     @answers()
     def claim(self) -> str:
-        """In a sentence."""
-        names = [joint.law.name for joint in self.joints if joint.verdict.outcome == self.outcome]
+        """How many joints are what, and of the first of the worst what happens, how much and what to do."""
+        told = claim_of_joints(self.outcome, [(joint.law.name, joint.verdict) for joint in self.joints])
         if self.outcome == "passive":
-            return "No motion of a hand that moves one joint takes energy out, with these gains."
-        what = {"active": "Energy comes out of", "undecided": "It is not known whether energy comes out of"}
-        return f"{what.get(self.outcome, 'Proved less than passive are')} {', '.join(names)}."
+            return told
+        return f"{told} Gains that are proved are written by -o passive.yaml, in Python by passive_gains."
 
     @property
     def margin(self) -> float | None:
@@ -108,6 +109,19 @@ class HeldJoints(Documented):
         ]
         yield Table(rows=rows, heads=heads, lefts=1)
         yield Lines(self.notes, "assumes")
+
+
+def claim_of_joints(outcome: Outcome, joints: Sequence[tuple[str, Verdict | PairVerdict]]) -> str:
+    """How many are what, and the sentence of one: of those of this outcome the one that lacks most."""
+    found = [verdict.outcome for _, verdict in joints]
+    counts = ", ".join(
+        f"{found.count(one)} {one}" for one in (*_WORST[::-1], "passive")[::-1] if one in found
+    )
+    name, worst = min(
+        ((name, verdict) for name, verdict in joints if verdict.outcome == outcome),
+        key=lambda one: -inf if one[1].margin is None else one[1].margin,
+    )
+    return f"Of {len(found)} joints, each by itself: {counts}. {name}: {worst.claim}"
 
 
 def check_controllers(

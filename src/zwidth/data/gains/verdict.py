@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from zwidth.data.gains.arms import MOST_READINGS, ArmGains, Delay
 from zwidth.data.gains.best import best, passive_compensation, required_damping, stiffest
+from zwidth.data.gains.held_joints import claim_of_joints
 from zwidth.data.gains.joint import CoupledJoint, JointGains
 from zwidth.data.gains.plant import GivenPlant
 from zwidth.errors import InputError
@@ -93,8 +94,8 @@ class JointVerdict(Shown):
     @property
     @answers()
     def claim(self) -> str:
-        """In a sentence."""
-        return f"{self.verdict.found}."
+        """As of the pair: what happens, how much and what to do."""
+        return self.verdict.claim
 
     @property
     def margin(self) -> float | None:
@@ -200,13 +201,8 @@ class GainsVerdict(Documented):
     @property
     @answers()
     def claim(self) -> str:
-        """How many joints are what, in a sentence."""
-        counts = [
-            (sum(joint.outcome == outcome for joint in self.joints), outcome)
-            for outcome in ("passive", "active", "undecided")
-        ]
-        told = ", ".join(f"{count} {outcome}" for count, outcome in counts if count)
-        return f"Of {len(self.joints)} joints, each by itself: {told}."
+        """How many joints are what, and of the worst what happens, how much and what to do."""
+        return claim_of_joints(self.outcome, [(joint.name, joint.verdict) for joint in self.joints])
 
     @property
     def margin(self) -> float | None:

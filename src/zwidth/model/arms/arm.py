@@ -21,6 +21,7 @@ import numpy.typing as npt
 from zwidth.errors import InputError
 from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.exact import ends
+from zwidth.quantity.units import in_si
 from zwidth.showing import one_line
 
 Array = npt.NDArray[np.float64]
@@ -82,18 +83,18 @@ class Arm(ABC):
     """
 
     damping: Damping
-    coulomb_friction: Sequence[float] = ()
-    resolution: Sequence[float] = ()
-    torque_limit: Sequence[float] = ()
+    coulomb_friction: Sequence[float | str] = ()
+    resolution: Sequence[float | str] = ()
+    torque_limit: Sequence[float | str] = ()
     name: str = "arm"
     transmission: Transmission | Sequence[Transmission] | None = None
 
     def __post_init__(self) -> None:
-        m = self.joint_count
+        m, names = self.joint_count, self.joint_names
         object.__setattr__(self, "name", one_line(self.name))
-        object.__setattr__(self, "damping", joint_damping(self.damping, m))
+        object.__setattr__(self, "damping", joint_damping(self.damping, names, self.sliding))
         for key in ("coulomb_friction", "resolution", "torque_limit"):
-            object.__setattr__(self, key, _numbers(getattr(self, key), key, m))
+            object.__setattr__(self, key, joint_numbers(getattr(self, key), key, names, self.sliding))
         object.__setattr__(self, "transmission", _transmissions(self.transmission, m))
         for joint, each in enumerate(self.transmissions, start=1):
             each.require("linear" if self.sliding[joint - 1] else "rotary", f"joint {joint}")
@@ -104,6 +105,11 @@ class Arm(ABC):
     @abstractmethod
     def joint_count(self) -> int:
         """m, the joints that have a motor or move freely."""
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of each joint, for reports."""
+        return tuple(f"joint {i + 1}" for i in range(self.joint_count))
 
     @property
     def sliding(self) -> tuple[bool, ...]:
@@ -169,6 +175,13 @@ class Arm(ABC):
                 felt[place] = nextafter(float(exact), 0.0)
         return self.replace(damping=felt, transmission=Transmission())
 
+    def at(self, joints: npt.ArrayLike, digits: int = 4) -> str:
+        """A place of the joints in words, as `--hold` takes it: "shoulder=0.2, elbow=0.4" [rad; m]."""
+        values = np.asarray(joints, dtype=np.float64).tolist()
+        return ", ".join(
+            f"{name}={value:.{digits}g}" for name, value in zip(self.joint_names, values, strict=True)
+        )
+
     def replace(self, **changes: Any) -> Arm:
         """The same arm with some numbers changed."""
         given = {key: getattr(self, key) for key in self.__dataclass_fields__}
@@ -209,18 +222,41 @@ def middles(low: float, high: float, count: int) -> Array:
     return low + (high - low) * (np.arange(count) + 0.5) / count
 
 
-def _numbers(values: Sequence[float], key: str, count: int) -> tuple[float, ...]:
-    try:
-        numbers = tuple(float(v) for v in np.atleast_1d(np.asarray(values, dtype=np.float64)))
-    except (TypeError, ValueError):
-        raise InputError(f"{key}: one number for each joint, got {values!r}") from None
-    if not numbers:
-        return ()
-    if len(numbers) != count:
-        raise InputError(f"{key}: give one for each joint, {count} in all; got {len(numbers)}")
+JOINT_UNITS = {
+    "damping": ("N*m*s/rad", "N*s/rad", "N*s/m"),
+    "coulomb_friction": ("N*m", "N"),
+    "resolution": ("rad", "m"),
+    "torque_limit": ("N*m", "N"),
+}
+"""Of joints that turn, and of those that slide; of damping also between the two."""
+
+
+def joint_numbers(given: Any, key: str, names: Sequence[str], sliding: Sequence[bool]) -> tuple[float, ...]:
+    """One for each joint in SI, from numbers or texts with a unit; none of what is not given."""
+    values = _listed(given)
+    if values is None or values.ndim != 1:
+        raise InputError(f"{key}: one number for each joint, got {given!r}")
+    units = (JOINT_UNITS[key][0], JOINT_UNITS[key][-1])
+    numbers = tuple(
+        in_si(value, units[slides], f"{key} of {name}")
+        for value, name, slides in zip(values, names, sliding, strict=False)
+    )
+    if len(values) not in (0, len(names)):
+        raise InputError(
+            f"{key}: give one for each joint, {len(names)} in all; got {len(values)}; "
+            f"they are {', '.join(names)}"
+        )
     if any(not isfinite(v) or v < 0 for v in numbers):
         raise InputError(f"{key} must be finite and ≥ 0 in every joint, got {numbers}")
     return numbers
+
+
+def _listed(given: Any) -> npt.NDArray[np.object_] | None:
+    """As an array; None where rows are not equally long."""
+    try:
+        return np.atleast_1d(np.asarray(given, dtype=object))
+    except ValueError:
+        return None
 
 
 # What viscous friction takes out of the joints: the power q̇ᵀ δ_m q̇ ≥ 0 of the torque −δ_m q̇.
@@ -232,38 +268,36 @@ def _numbers(values: Sequence[float], key: str, count: int) -> tuple[float, ...]
 #
 # (Miller, Colgate & Freeman 2004, section IV-A: "δ_m is a matrix of dissipation parameters").
 
-Damping = Sequence[float] | Sequence[Sequence[float]] | Array
+Damping = Sequence[float | str] | Sequence[Sequence[float | str]] | Array
 
 _UNEVEN = 1e-12
 """Of the roots of both diagonal entries, whatever the units: what symmetry and positivity may miss."""
 
 
-def joint_damping(given: Damping, joints: int) -> tuple[float, ...] | tuple[tuple[float, ...], ...]:
+def joint_damping(
+    given: Damping, names: Sequence[str], sliding: Sequence[bool]
+) -> tuple[float, ...] | tuple[tuple[float, ...], ...]:
     """δ_m as an arm keeps it: b_i of each joint, or the rows of a matrix that is not diagonal."""
-    try:
-        values = np.atleast_1d(np.asarray(given, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise InputError(
-            f"damping: one number for each joint, or a square matrix of them; got {given!r}"
-        ) from None
-    return _of_each(values, joints) if values.ndim == 1 else _of_all(values, joints)
-
-
-def _of_each(values: Array, joints: int) -> tuple[float, ...]:
-    numbers = tuple(values.tolist())
-    if len(numbers) != joints:
-        raise InputError(f"damping: give one for each joint, {joints} in all; got {len(numbers)}")
-    if any(not isfinite(v) or v < 0 for v in numbers):
-        raise InputError(f"damping must be finite and ≥ 0 in every joint, got {numbers}")
-    return numbers
-
-
-def _of_all(values: Array, joints: int) -> tuple[float, ...] | tuple[tuple[float, ...], ...]:
+    values, joints = _listed(given), len(names)
+    if values is not None and values.ndim == 1 and not any(isinstance(v, (list, tuple)) for v in values):
+        return joint_numbers(values, "damping", names, sliding)
+    if values is None or values.ndim == 1:
+        raise InputError(f"damping: one number for each joint, or a square matrix of them; got {given!r}")
     if values.shape != (joints, joints):
         raise InputError(
             f"damping: a matrix for {joints} joint{'s' if joints > 1 else ''} is {joints} × {joints}, "
             f"got the shape {values.shape}"
         )
+    units = JOINT_UNITS["damping"]
+    rows = [
+        [in_si(value, units[i + j], "damping") for value, j in zip(row, sliding, strict=True)]
+        for row, i in zip(values, sliding, strict=True)
+    ]
+    return _of_all(np.array(rows))
+
+
+def _of_all(values: Array) -> tuple[float, ...] | tuple[tuple[float, ...], ...]:
+    joints = len(values)
     own = np.diag(values)
     if not np.isfinite(values).all() or (own < 0).any():
         raise InputError("damping must be finite, and ≥ 0 on the diagonal: friction does not push")

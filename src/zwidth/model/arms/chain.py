@@ -82,6 +82,10 @@ class PlanarChain(Arm):
         return len(self.links)
 
     @property
+    def joint_names(self) -> tuple[str, ...]:
+        return tuple(f"q{i + 1}" for i in range(self.joint_count))
+
+    @property
     def turns(self) -> int:
         """1 in pose."""
         return int(self.pose)

@@ -19,7 +19,7 @@ from zwidth.model.arms.arm import Arm, Array, Axis, Sites, as_joints, middles
 from zwidth.model.arms.chain import Placed
 from zwidth.model.arms.mechanism import Frame, Joint, Mechanism, Placement, turned
 
-_MOST_MAPPED = 2
+MOST_MAPPED = 2
 """Joints of a map of cells."""
 
 _DIGITS = 15
@@ -67,8 +67,12 @@ class DescribedArm(Arm):
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """Of the joints that move by themselves, in order."""
-        return tuple(each.name for each in self.model.coordinates)
+        return self.model.names
+
+    @property
+    def locked(self) -> tuple[str, ...]:
+        """Joints without damping that are held, in words."""
+        return self.model.fixed
 
     @property
     def follows(self) -> bool:
@@ -99,7 +103,7 @@ class DescribedArm(Arm):
     def sites(self, points: int) -> Sites:
         """Equal cells of the two joints that move, the others held."""
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
-        if len(moving) > _MOST_MAPPED:
+        if len(moving) > MOST_MAPPED:
             raise InputError(
                 f"a map of cells moves one or two joints, here {len(moving)} would move: hold the others, or "
                 "ask for postures, zwidth.stiffness_over_postures or --postures"
@@ -118,7 +122,7 @@ class DescribedArm(Arm):
         ]
         rates, between = self._rates()
         change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
-        return Sites(axes, q, positions, jacobians, change, "; ".join(words))
+        return Sites(axes, q, positions, jacobians, change, "; ".join([*words, *self.locked]))
 
     def placed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
         """Position and Jacobian of `sites` at any joints (…, m): in pose of every rest, or of `rest`."""
@@ -153,9 +157,7 @@ class DescribedArm(Arm):
 
     @property
     def _frame(self) -> Frame:
-        """Where a link and a joint share the name, that of the link."""
-        named = [frame for frame in self.model.frames if frame.name == self.frame]
-        return max(named, key=lambda frame: frame.is_body)
+        return self.model.frame(self.frame)
 
     @property
     def sliding(self) -> tuple[bool, ...]:
@@ -193,7 +195,9 @@ class DescribedArm(Arm):
         for joint in reversed(path):
             if joint.slides:
                 i = joint.coordinate
-                travel = max(map(abs, self.joint_range[i])) + (self.resolution[i] if self.resolution else 0.0)
+                travel = max(map(abs, self.joint_range[i])) + (
+                    float(self.resolution[i]) if self.resolution else 0.0
+                )
                 length += abs(joint.factor) * travel + abs(joint.offset)
             beyond.insert(0, length)
             length += float(np.linalg.norm(joint.at.translation))

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from pathlib import Path
 from typing import NamedTuple
@@ -99,6 +99,10 @@ class Coordinate(NamedTuple):
     effort: float
     bare: bool  # a spring moves it, and no motor
 
+    @property
+    def unit(self) -> str:
+        return "m" if self.slides else "rad"
+
 
 class Frame(NamedTuple):
     """A frame that the hand may be at, in that of a joint; −1: the base."""
@@ -120,6 +124,24 @@ class Mechanism:
     frames: tuple[Frame, ...]
     notes: tuple[str, ...] = ()
     springs: tuple[str, ...] = ()  # what is to be known of those to a rest of their own
+    fixed: tuple[str, ...] = ()  # joints that are locked where they are held, in words
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the joints that move by themselves, in order."""
+        return tuple(each.name for each in self.coordinates)
+
+    def frame(self, name: str, file: str = "") -> Frame:
+        """The frame of a name; where a link and a joint share it, that of the link."""
+        named = [frame for frame in self.frames if frame.name == name]
+        if not named:
+            has = ", ".join(frame.name for frame in self.frames[:20])
+            raise InputError(f"{file} has no frame {name!r}; it has {has}")
+        return max(named, key=lambda frame: frame.is_body)
+
+    def moves(self, frame: Frame) -> list[int]:
+        """The coordinates that move a frame, from the base on."""
+        return [joint.coordinate for joint in self.path(frame)]
 
     def path(self, frame: Frame) -> list[Joint]:
         """The joints between the base and a frame, from the base on."""
@@ -128,6 +150,31 @@ class Mechanism:
             found.insert(0, self.joints[at])
             at = self.joints[at].before
         return found
+
+    def locked(self, values: Mapping[int, float], words: Sequence[str]) -> Mechanism:
+        """The same without some coordinates, each fixed at a value [rad; m]; with the words for that."""
+        kept = [i for i in range(len(self.coordinates)) if i not in values]
+        joints, where = list[Joint](), {-1: (-1, Placement())}
+        for i, joint in enumerate(self.joints):
+            before, place = where[joint.before]
+            at, axis = place.then(joint.at), np.array(joint.axis)
+            if joint.coordinate in values:
+                v = joint.factor * values[joint.coordinate] + joint.offset
+                moved = placement(np.eye(3), v * axis) if joint.slides else placement(turned(axis, v))
+                where[i] = before, at.then(moved)
+            else:
+                where[i] = len(joints), Placement()
+                joints.append(joint._replace(before=before, at=at, coordinate=kept.index(joint.coordinate)))
+        return replace(
+            self,
+            joints=tuple(joints),
+            coordinates=tuple(self.coordinates[i] for i in kept),
+            frames=tuple(
+                frame._replace(joint=where[frame.joint][0], at=where[frame.joint][1].then(frame.at))
+                for frame in self.frames
+            ),
+            fixed=tuple(words),
+        )
 
 
 _BESIDE = (

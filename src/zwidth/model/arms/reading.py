@@ -18,13 +18,15 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
-from zwidth.model.arms.arm import Arm, Damping
+from zwidth.model.arms.arm import Arm, Damping, joint_damping, joint_numbers
 from zwidth.model.arms.chain import PlanarChain
-from zwidth.model.arms.described import DescribedArm, PosedArm
+from zwidth.model.arms.described import MOST_MAPPED, DescribedArm, PosedArm
 from zwidth.model.arms.formats import read_mjcf, read_urdf
+from zwidth.model.arms.joints import as_matrix
 from zwidth.model.arms.legs import Leg, LeggedArm
-from zwidth.model.arms.mechanism import Coordinate, Mechanism, parsed
+from zwidth.model.arms.mechanism import Coordinate, Frame, Mechanism, parsed
 from zwidth.model.device.transmission import Transmission
+from zwidth.quantity.units import in_si
 
 _ENDINGS = (".urdf", ".xml", ".mjcf")
 _FAR = 1e3
@@ -35,13 +37,13 @@ def read_arm(
     path: str | Path,
     *,
     frame: str | None = None,
-    hold: dict[str, float] | None = None,
+    hold: Mapping[str, float | str] | None = None,
     damping: Damping | None = None,
-    coulomb_friction: Sequence[float] | None = None,
-    resolution: Sequence[float] = (),
-    torque_limit: Sequence[float] | None = None,
+    coulomb_friction: Sequence[float | str] | None = None,
+    resolution: Sequence[float | str] = (),
+    torque_limit: Sequence[float | str] | None = None,
     pose: bool = False,
-    rest: dict[str, float] | None = None,
+    rest: Mapping[str, float | str] | None = None,
     whole: bool = False,
     transmission: Transmission | Sequence[Transmission] | None = None,
 ) -> DescribedArm:
@@ -54,11 +56,12 @@ def read_arm(
     frame
         The frame at whose origin the hand is; None: the last one of an arm that does not branch.
     hold
-        Joints that stay at a value [rad; m], by name; the map moves two joints at most.
-        None: of more than two joints, all but the first two are held in the middle of their ranges.
+        Joints that stay at a value [rad; m], by name; one without damping is locked there. A map moves the
+        first two of the others, and holds the rest in the middle of their ranges.
     damping, coulomb_friction, torque_limit
         Of each joint [N·m·s/rad], [N·m], [N·m], or one number in a list for all of them; None: those of
         the description. Damping may be a matrix, as of `Arm`, in the order of the description's joints.
+        Joints without damping that do not move the hand are left out.
     resolution
         Encoder step of each joint [rad; m]; descriptions have none.
     pose
@@ -74,41 +77,84 @@ def read_arm(
     Raises
     ------
     InputError
-        If the file cannot be read, a name is not in it, or its joints have no damping at all.
+        If the file cannot be read, a name is not in it, or it gives a joint that moves the hand no damping.
     """
     path = Path(path)
     model = read_mechanism(path)
-    each, frames = model.coordinates, [frame.name for frame in model.frames]
-    m, names = len(each), [coordinate.name for coordinate in each]
-    if frame is not None and frame not in frames:
-        raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[:20])}")
-    b: Damping = tuple(c.damping for c in each) if damping is None else _for_each(damping, m)
+    every, names, slides = model.coordinates, model.names, tuple(one.slides for one in model.coordinates)
+    m, held = len(every), _values(every, hold or {}, "hold")
+    own = [one.damping for one in every]
+    b = joint_damping(own if damping is None else _for_each(damping, m), names, slides)
     if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
             f"measure it and give damping, on the command line --joint-damping, or write {model.advice}"
         )
-    limits = tuple(c.effort for c in each) if torque_limit is None else tuple(_for_each(torque_limit, m))
+    frame = _last_frame(model, path.name) if frame is None else frame
+    way = model.moves(model.frame(frame, path.name))
+    bare = [i for i, of_joint in enumerate(as_matrix(b).diagonal()) if of_joint == 0]
+    lacking = [i for i in bare if i in way and i not in held]
+    if lacking and damping is None:
+        raise InputError(f"{path.name} gives {_to_damp(model, way, lacking, held)}")
+    locked = {i: held.get(i, 0.0) for i in bare if i not in lacking}
+    left = [i for i in range(m) if i not in locked]
+    words = [f"{names[i]} locked at {at:.4g} {every[i].unit}" for i, at in locked.items() if i in held]
+    efforts = [one.effort for one in every if 0 < one.effort < np.inf]
+    limits = efforts if len(efforts) == m else ()
+
+    def each(given: Any, key: str) -> tuple[float, ...]:
+        numbers = joint_numbers(_for_each(given, m), key, names, slides)
+        return tuple(numbers[i] for i in left) if numbers else ()
+
     given: dict[str, Any] = {
-        "model": model,
-        "frame": frame or _last_frame(model, path.name),
-        "joint_range": _ranges(each, names, {} if whole and hold is None else hold, whole),
-        "damping": b,
-        "coulomb_friction": (
-            tuple(c.friction for c in each) if coulomb_friction is None else _for_each(coulomb_friction, m)
+        "model": model.locked(locked, words),
+        "frame": frame,
+        "joint_range": _ranges([every[i] for i in left], [held.get(i) for i in left], whole),
+        "damping": np.array(b)[np.ix_(left, left) if np.ndim(b) > 1 else left],
+        "coulomb_friction": each(
+            [one.friction for one in every] if coulomb_friction is None else coulomb_friction,
+            "coulomb_friction",
         ),
-        "resolution": _for_each(resolution, m),
-        "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
+        "resolution": each(resolution, "resolution"),
+        "torque_limit": each(limits if torque_limit is None else torque_limit, "torque_limit"),
         "name": model.name,
-        "transmission": transmission,
-        "damping_source": "; ".join([*([_source(model)] if damping is None else []), *model.springs]),
+        "transmission": (
+            [transmission[i] for i in left]
+            if isinstance(transmission, Sequence) and len(transmission) == m
+            else transmission
+        ),
+        "damping_source": "; ".join(
+            [*([_source(model.locked(locked, ()))] if damping is None else []), *model.springs]
+        ),
     }
     if pose:
-        resting = None if rest is None else _rest(given["joint_range"], names, rest)
-        return PosedArm(rest=resting, **given)
+        return PosedArm(
+            rest=None if rest is None else _rest(given["joint_range"], every, left, rest), **given
+        )
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
+
+
+def _to_damp(model: Mechanism, way: Sequence[int], lacking: Sequence[int], held: Mapping[int, float]) -> str:
+    """Which joints have no damping, and what to do about it."""
+    names, several = model.names, len(lacking) > 1
+    joints, it, are = " and ".join(names[i] for i in lacking), ("it", "them")[several], ("is", "are")[several]
+    stay = {**held, **{i: _middle(model.coordinates[i]) for i in lacking}}
+    hold = ",".join(f"{names[i]}={at:.4g}" for i, at in stay.items())
+    before = way.index(lacking[0]) if lacking[0] in way else 0
+    frames = [one.name for one in model.frames if one.is_body and model.moves(one) == way[:before]]
+    leave = (
+        f"leave {it} out, with the hand before: --frame {frames[-1]} (frame=…); or "
+        if before and frames
+        else ""
+    )
+    return (
+        f"{joints} no damping, and no wall is passive at a hand that a joint without damping moves. "
+        f"Hold {it}, and {('it', 'they')[several]} {are} taken as locked: --hold {hold} (in Python hold=…); "
+        f"{leave}measure the damping and write {model.advice}, or give --joint-damping, in Python damping, "
+        "one number for all joints or one for each"
+    )
 
 
 def _last_frame(model: Mechanism, name: str) -> str:
@@ -118,10 +164,17 @@ def _last_frame(model: Mechanism, name: str) -> str:
     if len(borne) > 1:
         raise InputError(
             f"{name} branches, and ends at {', '.join(each[-1].name for each in borne.values())}: at which "
-            "frame is the hand? Say it with frame=…, on the command line --frame NAME; a link before the "
-            "branches will do, too"
+            f"frame is the hand? Say it with frame=…, on the command line --frame NAME{_before(model, borne)}"
         )
     return borne[ends.pop()][-1].name
+
+
+def _before(model: Mechanism, ends: Mapping[int, list[Frame]]) -> str:
+    """The last body before the branches, if a joint moves it."""
+    ways = [model.moves(frames[-1]) for frames in ends.values()]
+    shared = [one for one, *others in zip(*ways, strict=False) if all(other == one for other in others)]
+    frames = [one.name for one in model.frames if one.is_body and model.moves(one) == shared]
+    return f", such as --frame {frames[-1]}, before the branches" if shared and frames else ""
 
 
 def read_mechanism(path: Path) -> Mechanism:
@@ -162,46 +215,53 @@ def _source(model: Mechanism) -> str:
 
 
 def _ranges(
-    each: Sequence[Coordinate], names: list[str], hold: dict[str, float] | None, whole: bool
+    each: Sequence[Coordinate], held: Sequence[float | None], whole: bool
 ) -> tuple[tuple[float, float], ...]:
-    _named(hold or {}, names, "hold")
-    ranges = []
-    for i, joint in enumerate(each):
-        if hold is not None and joint.name in hold:
-            low = high = _held(joint, float(hold[joint.name]))
-        else:
-            low, high = _limits(joint)
-            if hold is None and i >= 2:
-                low = high = (low + high) / 2
+    """Of the joints that are held one value; of a map all but two of the others in the middle."""
+    ranges, moving = list[tuple[float, float]](), 0
+    for joint, at in zip(each, held, strict=True):
+        low, high = _limits(joint) if at is None else (at, at)
+        if not whole and moving == MOST_MAPPED:
+            low = high = (low + high) / 2
+        moving += low < high
         ranges.append((low, high))
-    moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
-    if not moving or (len(moving) > 2 and not whole):
-        raise InputError(f"the map moves one or two joints, here {len(moving)} would move; hold the others")
+    if not moving:
+        raise InputError("no joint that is left moves the hand, and there is nothing to map: hold one less")
     return tuple(ranges)
 
 
 def _rest(
-    ranges: tuple[tuple[float, float], ...], names: list[str], rest: dict[str, float]
+    ranges: tuple[tuple[float, float], ...],
+    every: Sequence[Coordinate],
+    left: Sequence[int],
+    rest: Mapping[str, float | str],
 ) -> tuple[float, ...]:
-    _named(rest, names, "rest")
-    return tuple(
-        float(rest.get(name, (low + high) / 2)) for name, (low, high) in zip(names, ranges, strict=True)
-    )
+    given = _values(every, rest, "rest")
+    return tuple(given.get(i, (low + high) / 2) for i, (low, high) in zip(left, ranges, strict=True))
 
 
-def _named(given: dict[str, float], names: list[str], what: str) -> None:
-    unknown = sorted(set(given) - set(names))
-    if unknown:
+def _values(each: Sequence[Coordinate], given: Mapping[str, float | str], what: str) -> dict[int, float]:
+    """By the place of the joint, in SI; where it is held it can be."""
+    names = [joint.name for joint in each]
+    if unknown := sorted(set(given) - set(names)):
         raise InputError(f"{what}: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
+    found = {
+        names.index(name): in_si(value, each[names.index(name)].unit, f"{what} of {name}")
+        for name, value in given.items()
+    }
+    for i, value in found.items() if what == "hold" else ():
+        low, high = each[i].limits
+        if not (np.isfinite(value) and low <= value <= high):
+            bounds = (
+                f"from {low:g} to {high:g} {each[i].unit}" if np.isfinite(each[i].limits).any() else "finite"
+            )
+            raise InputError(f"hold: {each[i].name} can be {bounds}, got {value:g}")
+    return found
 
 
-def _held(joint: Coordinate, value: float) -> float:
+def _middle(joint: Coordinate) -> float:
     low, high = joint.limits
-    if not (np.isfinite(value) and low <= value <= high):
-        ends = f"from {low:g} to {high:g} {'m' if joint.slides else 'rad'}"
-        bounds = ends if np.isfinite(joint.limits).any() else "finite"
-        raise InputError(f"hold: {joint.name} can be {bounds}, got {value:g}")
-    return value
+    return (low + high) / 2 if np.isfinite(joint.limits).all() else 0.0
 
 
 def _limits(joint: Coordinate) -> tuple[float, float]:
@@ -231,7 +291,7 @@ def _limits(joint: Coordinate) -> tuple[float, float]:
 # The regions of work are choices of this project, inside the reach of each.
 
 
-def built_in(name: str, *, damping: float | Damping, **numbers: Any) -> Arm:
+def built_in(name: str, *, damping: float | str | Damping, **numbers: Any) -> Arm:
     """An arm with published geometry.
 
     Parameters
@@ -263,7 +323,7 @@ def built_in(name: str, *, damping: float | Damping, **numbers: Any) -> Arm:
     merged = {"name": name, **given, "damping": damping, **numbers}
     for key in ("damping", "coulomb_friction", "resolution", "torque_limit"):
         value = merged.get(key, ())
-        merged[key] = (value,) * joints if isinstance(value, (int, float)) else value
+        merged[key] = (value,) * joints if isinstance(value, (int, float, str)) else value
     return kind(**merged)
 
 

@@ -222,7 +222,9 @@ def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
         "stiffness",
         near=partial(_stiffness_that_turns, pair),
     )
-    for key, quantity in (("damping", "virtual_damping"), ("local_damping", "local_damping")):
+    own_in_drive = pair.local_damping == -pair.damping  # one gain, whose other half is in the arms' damping
+    keys = () if own_in_drive else (("damping", "virtual_damping"), ("local_damping", "local_damping"))
+    for key, quantity in keys:
         gain: Exact = getattr(pair, key)
         if gain and getattr(pair, f"follower_{key}") is None:
             sign = -1 if gain < 0 else 1

@@ -199,7 +199,7 @@ def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits
     for joint, at in zip(document["arm"]["joints"], arm.placements()[0], strict=True):
         unit, per = ("m", "N") if at.slides else ("rad", "N_m")
         joint[f"resolution_{unit}"] = text(moving_steps(arm)[at.joint])
-        joint[f"coulomb_friction_{per}"] = text(friction[at.joint])
+        joint[f"coulomb_friction_{per}"] = text(float(friction[at.joint]))
         if not at.slides:
             joint["largest_column_m_per_rad"] = text(steps.columns[at.joint])
     loop = document["loop"]
@@ -361,7 +361,7 @@ def _begun(question: Question, spring: NullSpaceSpring) -> tuple[dict[str, Any] 
         return None, "a joint has no Coulomb friction that is known"
     machine = chain_document(arm)
     for joint, i in zip(machine["joints"], own, strict=True):
-        joint["coulomb_friction_N_m"] = text(friction[i])
+        joint["coulomb_friction_N_m"] = text(float(friction[i]))
     del machine["geometry"]
     document = {
         "format": FORMAT,

@@ -41,7 +41,7 @@ from zwidth.passivity.workspace.verdict import (
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
-from zwidth.quantity.units import parse_number
+from zwidth.quantity.units import in_si
 
 Array = npt.NDArray[np.float64]
 
@@ -123,6 +123,7 @@ class NullSpace(PassivityAnswer):
             return (
                 f"{' '.join(self._motions())} These are hands that hold the links, such as one at the elbow "
                 "and one at the end; of a hand at the end alone nothing is said."
+                + ("" if self.slow is None else " Leave the spring out, or take a null-space damper alone.")
             )
         more = f" {OF_JOINTS_THAT_GIVE_WAY}" if self.question.arm.transmissions else ""
         if self.within is not None and self.certificate is not None:
@@ -184,10 +185,10 @@ class NullSpace(PassivityAnswer):
         alone = f"at the rest it may be {self.wall_factor:.4g} times as stiff"
         yield "wall alone", alone if self.wall_factor else "its virtual damping is too much for the joints"
         if self.slow is not None:
-            text = "leave the spring out, or take a null-space damper alone; keep the joints near its rest; "
             yield (
-                "change",
-                text + "or bound what it gives by an energy tank (Dietrich, Ott & Stramigioli 2016)",
+                "or",
+                "keep the joints near its rest; or bound what it gives by an energy tank (Dietrich, Ott & "
+                "Stramigioli 2016)",
             )
 
     def _covers(self) -> str:
@@ -221,7 +222,7 @@ def null_space(
     rate: RealLike,
     stiffness: RealLike,
     damping: RealLike = 0,
-    rest: Mapping[str, float] | Sequence[float] | None = None,
+    rest: Mapping[str, float | str] | Sequence[float | str] | None = None,
     regularization: float = 0,
     delay: RealLike = 0,
     within: RealLike | None = None,
@@ -284,19 +285,17 @@ def null_space(
 
 
 def _not_negative(value: RealLike, unit: str, name: str) -> float:
-    number = float(parse_number(value, unit, name))
+    number = in_si(value, unit, name)
     if number < 0:
         raise InputError(f"{name} must be ≥ 0 {unit}, got {number:g}: a spring pulls back, a damper brakes")
     return number
 
 
 def _rest(
-    arm: DescribedArm | PlanarChain, given: Mapping[str, float] | Sequence[float] | None
+    arm: DescribedArm | PlanarChain, given: Mapping[str, float | str] | Sequence[float | str] | None
 ) -> tuple[float, ...]:
     """q_d, inside the ranges."""
-    names = [f"q{i + 1}" for i in range(arm.joint_count)]
-    if isinstance(arm, DescribedArm):
-        names = list(arm.joint_names)
+    names = arm.joint_names
     if given is not None and not isinstance(given, Mapping):
         if len(given) != len(names):
             raise InputError(f"the null-space rest has a value for each of {len(names)} joints")
@@ -305,10 +304,11 @@ def _rest(
     for name, value in (given or {}).items():
         if name not in values:
             raise InputError(f"null-space rest: there is no joint {name!r}; there are {', '.join(names)}")
-        low, high = arm.joint_range[names.index(name)]
-        if not low <= value <= high:
-            raise InputError(f"null-space rest: {name} can be from {low:g} to {high:g}, got {value:g}")
-        values[name] = float(value)
+        place = names.index(name)
+        low, high = arm.joint_range[place]
+        values[name] = at = in_si(value, "m" if arm.sliding[place] else "rad", f"null-space rest of {name}")
+        if not low <= at <= high:
+            raise InputError(f"null-space rest: {name} can be from {low:g} to {high:g}, got {at:g}")
     return tuple(values.values())
 
 

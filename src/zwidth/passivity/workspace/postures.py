@@ -22,10 +22,11 @@ import numpy.typing as npt
 from zwidth.errors import InputError
 from zwidth.model.arms import Arm, ArmMotion, DescribedArm
 from zwidth.model.arms.encoders import covered_factors
-from zwidth.model.arms.joints import largest_scale, surplus
+from zwidth.model.arms.joints import largest_scale, least_additions, surplus
 from zwidth.model.arms.replay import refuting_motion
 from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
+from zwidth.passivity.advice import Advice, Kind, with_what_to_do
 from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.workspace.mapped import scaled_stiffness, stiffness_factors
@@ -34,7 +35,10 @@ from zwidth.passivity.workspace.verdict import (
     OF_JOINTS_THAT_GIVE_WAY,
     arm_document,
     between,
+    damping_advice,
     motion_document,
+    moved,
+    wall_advice,
     wall_document,
 )
 from zwidth.quantity.answered import answered, answers, known
@@ -109,17 +113,58 @@ class PostureMap(PassivityAnswer):
 
     @property
     def claim(self) -> str:
-        """What was found, and that it is of postures."""
-        of = f"{self.tried} postures over the joint ranges"
-        if self.motion is not None:
-            by = " of hands that hold the links" if self.motion.imposed_by == "links" else " of the hand"
-            return f"At one of {of} a motion{by} takes energy out."
-        gives_way = bool(self.question.arm.transmissions)
-        text = f"The condition holds at all of {of}; between them nothing is proved."
-        if self.stiffness_factor < 1:
-            found = "looked for" if gives_way else "found that takes energy out"
-            text = f"At some of {of} the condition fails, and no motion was {found}."
-        return f"{text} {OF_JOINTS_THAT_GIVE_WAY}" if gives_way else text
+        """What was found, how much and what to do; and that it is of postures."""
+        arm, steepest = self.question.arm, self.stiffness_factor
+        of = ", ".join([f"{self.tried} postures over the joint ranges", *getattr(arm, "locked", ())])
+        after = [OF_JOINTS_THAT_GIVE_WAY] if arm.transmissions else []
+        if steepest >= 1:
+            told = with_what_to_do(
+                f"At each of {of}, the joints have the damping that this wall asks for",
+                self.advice,
+                "passive",
+            )
+            return " ".join(
+                [
+                    told,
+                    "Between them nothing is proved, and so it is undecided; a map of two joints is proved: "
+                    "leave out --postures, in Python zwidth.workspace.",
+                    *after,
+                ]
+            )
+        if self.motion is None:
+            found = "looked for" if arm.transmissions else "found that takes energy out"
+            told = f"At some of {of}, the condition fails, and no motion was {found}"
+        else:
+            told = f"At one of {of}, {moved(self.motion, self.question.period)}"
+            if self.motion.imposed_by == "links":
+                after.append(
+                    "These are hands that hold the links, such as one at the elbow and one at the end."
+                )
+        return " ".join([with_what_to_do(told, self.advice, "active"), *after])
+
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """How stiff the wall may be at the postures tried; where that is not at all, how much it may damp."""
+        arm, size = self.question.arm, 3 + self.question.arm.turns
+        kind: Kind = "slack" if self.stiffness_factor >= 1 else "change"
+        where = "holds at every posture tried" if kind == "slack" else ", which holds at every posture tried"
+        found = wall_advice(arm, self.question.wall, size, self.stiffness_factor, kind, where)
+        if found or self.stiffness_factor:
+            return found
+        if not self.damping_factor:
+            return damping_advice(arm, self._additions, ", at the worst posture")
+        text = f"lower the virtual damping to {_down(self.damping_factor)} times what it is{where}"
+        return (Advice("virtual_damping", 1.0, self.damping_factor, "1", "change", text),)
+
+    @cached_property
+    def _additions(self) -> tuple[float, ...]:
+        """The least damping that the joints lack at the worst posture [N·m·s/rad]."""
+        size = 3 + self.question.arm.turns
+        need = self.question.need(size)
+        assert isinstance(self.question.arm, DescribedArm)
+        jacobian = self.question.arm.placed(np.array([self.worst]))[1]
+        lacking = surplus(jacobian, self.question.damping(size), need.stiffness_share + need.bound)
+        return tuple(least_additions(lacking)[0].tolist())
 
     @property
     def scope(self) -> Scope:
@@ -155,7 +200,9 @@ class PostureMap(PassivityAnswer):
             yield "virtual damping", self._damping(self.damping_factor)
         if self.encoder_factor is not None:
             yield "encoder steps", self._steps(self.encoder_factor)
-        yield "worst posture", ", ".join(f"{value:.3g}" for value in self.worst)
+        yield "worst posture", self.question.arm.at(self.worst, 3)
+        for advice in damping_advice(self.question.arm, self._additions, ", at the worst posture"):
+            yield "or", advice.text
         if self.motion is not None:
             often = shown(self.question.rate / len(self.motion.joints), "Hz")
             taken = shown(-self.motion.energy, "J")

@@ -73,11 +73,13 @@ class Question:
         held = held_torque_damping(arm, self.period, self.delay_samples, self.held_to)
         damping: npt.NDArray[np.float64] = as_matrix(arm.damping) - held * np.eye(arm.joint_count)
         if arm.joint_count > coordinates and np.linalg.eigvalsh(damping)[0] <= 0:
-            bare = [str(k + 1) for k, own in enumerate(np.diag(damping)) if own <= 0]
-            where = f"; none is left in joint {', '.join(bare)}" if bare else ""
+            own = zip(arm.joint_names, np.diag(damping), strict=True)
+            bare = ", ".join(name for name, b in own if b <= 0) or "some motion of the joints"
+            held_torques = " beyond what held torques ask for" if held else ""
             raise InputError(
-                "an arm with more joints than coordinates needs damping in each of them, beyond what held "
-                f"torques ask for{where}: give --joint-damping, joint_damping in Python"
+                f"no damping is left in {bare}{held_torques}, and an arm with more joints than the hand has "
+                "coordinates needs some in each: give more, or, of a description, hold the joint by its name "
+                "(--hold, hold=), and it is taken as locked"
             )
         return damping
 
@@ -161,7 +163,7 @@ def counting(
         reason = "" if steps.covered else "Coulomb friction is too small for them at any force"
         return Counting(steps=steps, limits=steps.covered, reason=reason)
     needed = steps.friction_up_to(*asked)
-    if all(own >= need for own, need in zip(arm.coulomb_friction, needed, strict=True)):
+    if all(float(own) >= need for own, need in zip(arm.coulomb_friction, needed, strict=True)):
         return Counting(steps=steps, limits=asked, reason="")
     return Counting(steps=steps, limits=(), reason=_too_small(steps, asked))
 

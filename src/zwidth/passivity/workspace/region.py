@@ -33,7 +33,7 @@ from zwidth.passivity.workspace.mapped import (
     stiffness_factors,
 )
 from zwidth.passivity.workspace.question import Counting, Forces, Question, asked_of, counting, with_motion
-from zwidth.passivity.workspace.verdict import OF_JOINTS_THAT_GIVE_WAY, Additions, Workspace
+from zwidth.passivity.workspace.verdict import OF_JOINTS_THAT_GIVE_WAY, Additions, Workspace, moved
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 
@@ -113,10 +113,12 @@ def workspace(
         can_be_refuted=arm.joint_count <= n and not arm.transmissions,
         has_friction=any(arm.coulomb_friction),
         gives_way=bool(arm.transmissions),
+        period=period,
     )
     return Workspace(
         outcome=outcome,
-        claim=claim(outcome, covers, account, found.words, found.steps),
+        found=what_was_found(outcome, covers, account, found),
+        besides=besides(outcome, covers, account, found),
         arm=arm,
         wall=wall,
         sample_period=period,
@@ -157,47 +159,53 @@ class Covers(NamedTuple):
     can_be_refuted: bool
     has_friction: bool  # whether any Coulomb friction is given
     gives_way: bool  # whether joints do between motor and link
+    period: float  # T [s]
 
 
-def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
-    """One sentence on what holds, others on what is not counted."""
+def what_was_found(outcome: str, covers: Covers, account: Account, found: Evidence) -> str:
+    """What was found and how much, without its point."""
     part = 100 * account.proved.mean()
     where = f"{covers.region}{_up_to(covers)}"
     if outcome == "passive":
-        text = f"No motion of the hand takes energy out with {where}, proved."
-    elif outcome == "passive without encoder steps":
-        text = f"Read without steps, no motion of the hand would take energy out with {where}, proved."
-    elif outcome == "theorem":
-        text = f"No motion of the hand takes energy out with {where}, by a proof on paper."
-    elif outcome == "active":
-        text = "At one point of this map a motion of the hand takes energy out."
-        if not covers.can_be_refuted:
-            text = (
-                "At one point of this map a motion of the joints takes energy out. It is made by hands that "
-                "hold the links, such as one at the elbow and one at the end; a hand at the end alone cannot "
-                "make every joint follow, and of it nothing is said."
-            )
-        if covers.encoder == "counted" and not covers.has_friction:
-            text += " Coulomb friction is not given and taken as 0."
-    elif covers.encoder == "counted" and without and (account.margins >= 0).all():
-        text = f"Whether a motion takes energy out behind these encoders is not known: {without}."
-        without = ""
-    elif (account.margins >= 0).all():
-        text = (
-            f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
-        )
-    else:
-        text = (
+        return f"No motion of the hand takes energy out with {where}, proved"
+    if outcome == "passive without encoder steps":
+        return f"Read without steps, no motion of the hand would take energy out with {where}, proved"
+    if outcome == "theorem":
+        return f"No motion of the hand takes energy out with {where}, by a proof on paper"
+    if found.motion is not None:
+        return f"At one point of this map {moved(found.motion, covers.period)}"
+    if not (account.margins >= 0).all():
+        return (
             f"{part:.4g} % of the region are proved; at other points the condition fails, and no motion was "
-            f"{'looked for' if covers.gives_way else 'found that takes energy out'}."
+            f"{'looked for' if covers.gives_way else 'found that takes energy out'}"
         )
-    if outcome in ("theorem", "undecided") and without:
-        text += f" There is no certificate: {without}."
+    if _is_of_encoders(covers, found):
+        return f"Whether a motion takes energy out behind these encoders is not known: {found.words}"
+    return f"The condition holds at every point; between the points {part:.4g} % of the region are proved"
+
+
+def besides(outcome: str, covers: Covers, account: Account, found: Evidence) -> str:
+    """What is not counted, and how the arm is read."""
+    told = list[str]()
+    if found.motion is not None and found.motion.imposed_by == "links":
+        told.append(
+            "These are hands that hold the links, such as one at the elbow and one at the end; a hand at the "
+            "end alone cannot make every joint follow, and of it nothing is said."
+        )
+    if found.motion is not None and covers.encoder == "counted" and not covers.has_friction:
+        told.append("Coulomb friction is not given and taken as 0.")
+    said = _is_of_encoders(covers, found) and (account.margins >= 0).all()
+    if outcome in ("theorem", "undecided") and found.words and not said:
+        told.append(f"There is no certificate: {found.words}.")
     if not account.reached.all():
-        text += " Parts of the region are out of reach; a smaller region may be proved."
+        told.append("Parts of the region are out of reach; a smaller region may be proved.")
     if covers.gives_way:
-        text += f" {OF_JOINTS_THAT_GIVE_WAY}"
-    return f"{text} {_counted(covers, outcome)}{_beyond(covers, steps, outcome)}"
+        told.append(OF_JOINTS_THAT_GIVE_WAY)
+    return " ".join([*told, f"{_counted(covers, outcome)}{_beyond(covers, found.steps, outcome)}"])
+
+
+def _is_of_encoders(covers: Covers, found: Evidence) -> bool:
+    return covers.encoder == "counted" and bool(found.words)
 
 
 def _counted(covers: Covers, outcome: str) -> str:

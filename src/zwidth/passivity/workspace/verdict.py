@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from math import isfinite
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -18,13 +18,15 @@ from zwidth.model.arms.joints import as_matrix, least_additions, single_addition
 from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
+from zwidth.passivity.advice import Advice, Kind, with_what_to_do
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer, share_left
 from zwidth.passivity.scope import Outcome, Scope, Torque, Transmission
 from zwidth.passivity.workspace.certificate import arm_certificate
+from zwidth.passivity.workspace.mapped import scaled_stiffness
 from zwidth.passivity.workspace.question import Question
 from zwidth.quantity.answered import answered, answers, finite, known
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import outward_decimal, shown, shown_at_least, shown_at_most
 
 if TYPE_CHECKING:
     import xarray
@@ -55,6 +57,7 @@ class Workspace(PassivityAnswer):
             '`"undecided"`; in words',
         ),
         ("arm, wall", "what was asked about; K and B as matrices"),
+        ("joint_names", "in the order of every list of joints"),
         ("joint_damping_source", "of damping that comes from a description: what is to be known of it"),
         (
             "joint_damping_N_m_s_rad",
@@ -102,7 +105,8 @@ class Workspace(PassivityAnswer):
     witness = None  # its motion is reckoned in doubles, and no evidence
 
     outcome: Outcome = known("which of these")
-    claim: str = known("in words, with what was assumed")
+    found: str = known("what was found and how much, without its point")
+    besides: str = known("whole sentences on what is not counted, and on how the arm is read")
     arm: Arm = known("what was asked about")
     wall: Wall | MatrixWall = known("likewise")
     sample_period: float = answered("T", unit="s")
@@ -193,11 +197,29 @@ class Workspace(PassivityAnswer):
     def _encoder_left_out(self) -> Literal["ideal", "not counted"]:
         return "not counted" if any(self.arm.resolution) else "ideal"
 
-    def __repr__(self) -> str:
-        stiffest = f"{self.stiffness_factor:.6g} times this one"
-        if self.largest_stiffness is not None:
-            stiffest = shown(self.largest_stiffness, "N/m", 6)
-        return f"<Workspace {self.outcome}: {self.claim} Stiffest wall at every point: {stiffest}>"
+    @cached_property
+    def claim(self) -> str:
+        """What was found, how much and what to do; then what is not counted, and how the arm is read."""
+        return f"{with_what_to_do(self.found, self.advice, self.outcome)} {self.besides}"
+
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """How stiff the wall may be; where no stiffness is low enough, which joints to damp."""
+        loop, times = (self.arm, self.wall, self.coordinates), self.stiffness_factor
+        if self.outcome in ("passive", "passive without encoder steps", "theorem"):
+            if self.encoder == "counted":
+                return ()  # friction may not cover the steps of a stiffer one
+            return wall_advice(*loop, times, "slack", "holds at every point of the map")
+        if 0 < times < 1:
+            proved = self.proved_softer
+            where = "" if proved else ", by the points of the map alone"
+            return wall_advice(*loop, proved or times, "change", where)
+        return damping_advice(self.arm, self.added.least.enough)
+
+    @cached_property
+    def proved_softer(self) -> float | None:
+        """How many times as stiff a wall of this kind is proved; None where none was."""
+        return self.added.stiffest(self.stiffness_factor) if 0 < self.stiffness_factor < inf else None
 
     def _left(self) -> float | None:
         """Of the stiffest wall that holds at every point."""
@@ -213,7 +235,6 @@ class Workspace(PassivityAnswer):
         return {
             **arm_document(self.arm),
             **super().numbers(),
-            "joint_damping_N_m_s_rad": np.asarray(self.arm.damping).tolist(),
             "wall": wall_document(self.wall, self.coordinates, turns),
             "largest_forces_N": list(self.largest_forces[:1]),
             "largest_moments_N_m": list(self.largest_forces[1:]),
@@ -230,17 +251,66 @@ class Workspace(PassivityAnswer):
         }
 
 
+_SHOWN = 1e-6
+"""Of the sum: what one joint gets less than this is the room for rounding."""
+
+
+def wall_advice(
+    arm: Arm, wall: Wall | MatrixWall, coordinates: int, times: float, kind: Kind, where: str
+) -> tuple[Advice, ...]:
+    """That the wall may be so many times as stiff, or must be; nothing where that is any or none."""
+    if not 0 < times < inf:
+        return ()
+    now, unit, factor = 1.0, "1", f"{outward_decimal(times, False):.4g} times"
+    if not arm.turns:  # in pose there is no one stiffness
+        now, unit = float(scaled_stiffness(wall, np.array(1.0), coordinates)), "N/m"
+    most = shown_at_most(now * times, unit)
+    if kind == "slack":
+        text = f"a wall {f'{factor} as stiff' if arm.turns else f'of up to {most}'} {where}"
+    elif arm.turns:
+        text = f"lower the stiffness to {factor} what it is{where}"
+    else:
+        text = f"lower the stiffness from {shown(now, unit)} to {most}{where}"
+    return (Advice("stiffness", now, now * times, unit, kind, text),)
+
+
+def damping_advice(arm: Arm, additions: Sequence[float], where: str = "") -> tuple[Advice, ...]:
+    """Which joints to give how much more damping; nothing where none is enough, or none is needed."""
+    if not any(additions) or not all(map(isfinite, additions)):
+        return ()
+    text = f"give the joints more damping, {told_additions(arm, additions)}{where}"
+    return (Advice("damping", 0.0, sum(additions), "N*m*s/rad", "change", text),)
+
+
+def told_additions(arm: Arm, additions: Sequence[float]) -> str:
+    """Of each joint that gets some how much."""
+    return ", ".join(
+        f"{shown_at_least(more, 'N*s/m' if slides else 'N*m*s/rad')} in {name}"
+        for name, more, slides in zip(arm.joint_names, additions, arm.sliding, strict=True)
+        if more > _SHOWN * sum(additions)
+    )
+
+
+def moved(motion: ArmMotion, period: float) -> str:
+    """What a motion takes out, and how long it lasts."""
+    by = "the hand" if motion.imposed_by == "end" else "the joints"
+    lasts = shown(len(motion.joints) * period, "s")
+    return f"a motion of {by} takes {shown(-motion.energy, 'J')} out in {lasts}, each time it is made"
+
+
 def between(arm: Arm) -> Transmission:
     """What of motors, encoders and links a verdict on an arm is about."""
     return "any" if arm.transmissions else "rigid"
 
 
 def arm_document(arm: Arm) -> dict[str, Any]:
-    """Its name, where a description's damping is from, and of joints that give way what motors feel."""
+    """Its name, its joints and their damping, and of joints that give way what motors feel."""
     source = arm.damping_source if isinstance(arm, DescribedArm) else ""
     felt = np.asarray(arm.at_motors.damping).tolist() if arm.transmissions else None
     return {
         "arm": arm.name,
+        "joint_names": list(arm.joint_names),
+        "joint_damping_N_m_s_rad": np.asarray(arm.damping).tolist(),
         **({"joint_damping_source": source} if source else {}),
         **({"joint_damping_that_motors_feel_N_m_s_rad": felt} if felt else {}),
     }

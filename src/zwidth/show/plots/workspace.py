@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FormatStrFormatter, MaxNLocator, NullLocator, ScalarFormatter
 
 from zwidth.errors import InputError
-from zwidth.model.arms import DescribedArm
 from zwidth.model.arms.null_space import Loop, Shape, gain, shapes
 from zwidth.passivity.workspace import Workspace
 from zwidth.quantity.spoken import spoken, spoken_data
@@ -228,7 +227,7 @@ def _draw_loop(axes: Axes, found: NullSpace, shape: Shape) -> None:
     axes.annotate(
         "rest", _pair(rest, first, second), xytext=(4, 4), textcoords="offset points", fontsize=SMALL
     )
-    names = [verbatim(name) for name in _names(found)]
+    names = [verbatim(name) for name in found.question.arm.joint_names]
     axes.set_xlabel(with_unit(f"joint {names[first]}", unit))
     axes.set_ylabel(with_unit(f"joint {names[second]}", unit))
     axes.set_aspect("equal", adjustable="datalim")
@@ -242,13 +241,6 @@ def _draw_loop(axes: Axes, found: NullSpace, shape: Shape) -> None:
 
 def _pair(joints: Array, first: int, second: int) -> tuple[float, float]:
     return float(joints[first]), float(joints[second])
-
-
-def _names(found: NullSpace) -> list[str]:
-    arm = found.question.arm
-    if isinstance(arm, DescribedArm):
-        return list(arm.joint_names)
-    return [f"q{i + 1}" for i in range(arm.joint_count)]
 
 
 def _largest(found: NullSpace) -> float:

@@ -42,6 +42,7 @@ from zwidth.machine.servo.devices.frames import counted_on, get_signed, unwritte
 from zwidth.machine.servo.devices.serial_port import BusServo, check_watchdog
 from zwidth.machine.servo.posix import Bytes, discard, write_all
 from zwidth.native.compiled import Array
+from zwidth.quantity.units import in_si
 
 # What it remembers: the servo; where the registers that are asked for stand together; how many questions it
 # has asked; the position before [counts] and whether there is one; counts of current per N·m and at most; the
@@ -184,16 +185,19 @@ class Dynamixel(BusServo):
         self,
         port: str,
         *,
-        torque_per_current: float,
+        torque_per_current: float | str,
         identifier: int = 1,
         baud: int = 1_000_000,
-        watchdog: float = 0.04,
-        current_unit: float | None = None,
+        watchdog: float | str = 0.04,
+        current_unit: float | str | None = None,
         reverse: bool | None = None,
     ) -> None:
         if not (isinstance(identifier, int) and 0 <= identifier <= 252):
             raise InputError(f"identifier must be 0 to 252, those of a Dynamixel, got {identifier!r}")
-        if not 0 < torque_per_current < math.inf:
+        torque_per_current = in_si(torque_per_current, "N*m/A", "torque_per_current")
+        watchdog = in_si(watchdog, "s", "watchdog")
+        current_unit = None if current_unit is None else in_si(current_unit, "A", "current_unit")
+        if torque_per_current <= 0:
             raise InputError(
                 f"torque per current must be > 0, got {torque_per_current:g} N·m/A: with it forces become "
                 "currents; measure it, or take the slope of the servo's performance graph"
@@ -203,7 +207,7 @@ class Dynamixel(BusServo):
                 f"watchdog must be 20 ms to 2.54 s, what the register holds, got {watchdog:g} s; "
                 "take the shortest that the loop keeps up with"
             )
-        if current_unit is not None and not 0 < current_unit < math.inf:
+        if current_unit is not None and current_unit <= 0:
             raise InputError(f"current unit must be > 0, got {current_unit:g} A: the register counts in it")
         super().__init__(port, identifier, baud)
         self.torque_per_current = torque_per_current

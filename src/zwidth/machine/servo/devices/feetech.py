@@ -55,6 +55,7 @@ from zwidth.machine.servo.devices.frames import (
 from zwidth.machine.servo.devices.serial_port import BusServo
 from zwidth.machine.servo.posix import Bytes, discard, write_all
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.units import in_si
 
 # What it remembers: the servo; how many questions it has asked; the position before [counts] and whether
 # there is one; duty [1/1000] per N·m and at most.
@@ -157,14 +158,15 @@ class Feetech(BusServo):
         self,
         port: str,
         *,
-        full_duty_torque: float,
+        full_duty_torque: float | str,
         identifier: int = 1,
         reverse: bool = False,
         baud: int = 1_000_000,
     ) -> None:
         if not (isinstance(identifier, int) and 0 <= identifier <= 253):
             raise InputError(f"identifier must be 0 to 253, those of a Feetech servo, got {identifier!r}")
-        if not 0 < full_duty_torque < math.inf:
+        full_duty_torque = in_si(full_duty_torque, "N*m", "full_duty_torque")
+        if full_duty_torque <= 0:
             raise InputError(
                 f"full-duty torque must be > 0, got {full_duty_torque:g} N·m: with it torques become duties; "
                 "measure it at standstill with your supply, or take the stall torque of the data sheet at "

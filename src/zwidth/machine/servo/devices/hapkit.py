@@ -54,6 +54,7 @@ from zwidth.machine.servo.devices.frames import (
 from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, discard, now, write_all
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.units import in_si
 
 TO_DEVICE, FROM_DEVICE = 0xA5, 0x5A
 START, ASK, GIVE = 1, 2, 3
@@ -181,15 +182,16 @@ class Hapkit(CompiledConnection):
     measure: ClassVar[Any] = staticmethod(_measure)
     apply: ClassVar[Any] = staticmethod(_apply)
 
-    def __init__(self, port: str, count: float, *, baud: int = 1_000_000) -> None:
-        if not (math.isfinite(count) and count != 0):
+    def __init__(self, port: str, count: float | str, *, baud: int = 1_000_000) -> None:
+        count = in_si(count, "m", "count")
+        if count == 0:
             raise InputError(
                 f"count is the handle's way in one count of the sensor [m] and not 0, got {count}: the board "
                 "tells counts alone; move the handle by a known way and divide it by the counts"
             )
         if not (isinstance(baud, int) and baud > 0):
             raise InputError(f"baud is a whole number > 0, got {baud!r}: give the one of the sketch")
-        self.port, self.count, self.baud = port, float(count), baud
+        self.port, self.count, self.baud = port, count, baud
         self._line: Any = None
         self._opened: Opened | None = None
 

@@ -54,6 +54,7 @@ from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.parameter import one_of
+from zwidth.quantity.units import in_si
 
 RESET, SETUP, EXCHANGE = 0, 1, 2
 
@@ -428,12 +429,14 @@ class HaplyMotor(_Haply):
         port: str,
         counts: float,
         *,
-        offset: float = 0.0,
+        offset: float | str = 0.0,
         rotation: str = "ccw",
         motor: str | None = None,
         number: int = 5,
     ) -> None:
-        super().__init__(port, number, (HaplyJoint(1, rotation, offset, counts, motor),))
+        super().__init__(
+            port, number, (HaplyJoint(1, rotation, in_si(offset, "rad", "offset"), counts, motor),)
+        )
 
     def describe(self) -> str:
         """Which device, over what, which axis: one line."""

@@ -70,6 +70,7 @@ from zwidth.machine.servo.devices.moteus_frames import (
 from zwidth.machine.servo.devices.serial_port import check_watchdog, open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.units import in_si
 
 # What it remembers besides MODE, FAULT and TURNS: how many questions it has asked, the position before
 # [turns] and whether there is one; the address of the servo, the watchdog [ms], whether lines have checksums.
@@ -235,7 +236,7 @@ class Moteus(CompiledConnection):
         port: str,
         *,
         identifier: int = 1,
-        watchdog: float = 0.1,
+        watchdog: float | str = 0.1,
         checksums: bool = False,
         baud: int = 921_600,
     ) -> None:
@@ -244,6 +245,7 @@ class Moteus(CompiledConnection):
                 f"identifier must be 1 to {_FIRST_SOURCE - 1}, got {identifier!r}: answers to the host go to "
                 "the higher ones; give the controller another id.id"
             )
+        watchdog = in_si(watchdog, "s", "watchdog")
         if not 0.001 <= watchdog <= 32.0:
             raise InputError(
                 f"watchdog must be 1 ms to 32 s, what the register holds, got {watchdog:g} s; "

@@ -46,6 +46,7 @@ from zwidth.machine.servo.devices.odrive_lines import (
     give_torque,
 )
 from zwidth.machine.servo.devices.serial_port import open_port
+from zwidth.quantity.units import in_si
 
 _ANSWER_TIME = 1.0
 _START_TIME = 3.0
@@ -131,7 +132,8 @@ class ODrive(CompiledConnection):
     measure = ask_position
     apply = give_torque
 
-    def __init__(self, port: str, *, axis: int = 0, baud: int = 115200, watchdog: float = 0.05) -> None:
+    def __init__(self, port: str, *, axis: int = 0, baud: int = 115200, watchdog: float | str = 0.05) -> None:
+        watchdog = in_si(watchdog, "s", "watchdog")
         if axis not in (0, 1):
             raise InputError(f"the axis of an ODrive must be 0 or 1, got {axis!r}")
         if not 0 < watchdog < 10:
