@@ -99,6 +99,13 @@ def test_the_hand_keeps_to_its_bounds():
 
 
 def test_a_motion_that_goes_on_for_too_long_is_called_so():
-    """The words of a motion of a minute and more."""
-    assert "goes on for so long" in claim_of_a_motion(1e-3, 449.0, 0.1, 1.0, "rad")
+    """High on a soft spring a short steep piece: microjoules a round, a quarter of a joule to get there."""
+    high = zw.NonlinearSpring(["-1", 0, "1", "1.01"], ["-0.5", 0, "0.5", "0.5085"])
+    refuted = zw.check(KNOB, high, iterate=False)
+    assert refuted.witness.motion.samples * refuted.witness.sample_period > 60
+    assert "although no hand goes on for so long" in refuted.claim
     assert "although" not in claim_of_a_motion(1e-3, 44.9, 0.1, 1.0, "rad")
+    with pytest.raises(
+        zw.InputError, match="goes on for .* s before it has gained .* the first 2.05 s of it"
+    ):
+        zw.replay(refuted)
