@@ -142,8 +142,8 @@ def test_intervals_of_a_device_are_taken_at_their_worst():
     verdict = zw.check(wide, STEEP)
     assert verdict.outcome == "passive"
     assert set(verdict.scope.intervals) == {"damping", "coulomb_friction", "resolution"}
-    lower = wide.replace(damping=(b * (1 - TINY), 2 * b), resolution=0)
-    assert zw.check(lower, STEEP).outcome != "passive"
+    lower = wide.replace(damping=(b * (1 - TINY), 2 * b))
+    assert zw.check(lower, STEEP, iterate=False).outcome != "passive"
 
 
 def test_laws_in_a_row():

@@ -212,8 +212,8 @@ def _claimed(witness: Witness | Gain, motion: Motion) -> float:
         whole, some = (shown(m.samples * witness.sample_period, "s", 3) for m in (witness.motion, motion))
         raise InputError(
             f"the motion goes on for {whole} before it has gained what the way in costs, and real hands are "
-            f"replayed for the first {some} of it at most: none of them has got anything out by then. Leave out "
-            "--replay; of a loop farther from its limit the motion is shorter"
+            f"replayed for the first {some} of it: by then none has got anything out. Leave out --replay; of "
+            "a loop farther from its limit the motion is shorter"
         )
     return energy
 

@@ -106,6 +106,8 @@ def _spring(device: Device, law: Environment, asked: Scope, values: Values) -> V
             return replace(verdict, outcome="active", motion=motion)
         verdict = verdict if need.bounded else replace(verdict, finding="no lowest energy")
         return values(verdict)
+    if need.spare(b) < 0:  # Coulomb friction pays for what damping lacks
+        verdict = replace(verdict, needs=())
     limited = friction == need.coulomb_friction > 0 or need.spare(b) == 0
     return _proved(verdict, certificate, asked, limited)
 
