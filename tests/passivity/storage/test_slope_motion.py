@@ -1,12 +1,17 @@
 """A spring given by points that is too steep: a motion to and fro on its rise, checked and simulated."""
 
 from fractions import Fraction
+from random import Random
 
 import numpy as np
 import pytest
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.passivity.formulas.nonlinear_spring import certify_spring, spring_need
+from zwidth.passivity.storage.domain import losses_of
+from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.slope_motion import slope_motion
 from zwidth.passivity.wording import claim_of_a_motion
 
 KNOB = zw.Device(
@@ -74,6 +79,24 @@ def test_what_coulomb_friction_pays_for():
     slope = found.proved_passive * 4 * 0.2 / 0.5
     assert slope * 0.25 == pytest.approx(0.8 * 0.25 + 2 * 2e-3, rel=0.01)  # (s − 2b/T) p/2 = 2 f_c
     assert found.certificate.verify()
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_nothing_is_both_proved_and_refuted(seed):
+    """Random springs with about the friction that they need: no motion gains where the checker accepts."""
+    rng = Random(seed)
+    positions = sorted(rng.sample(range(-400, 400), rng.randint(2, 7)))
+    forces = [rng.randint(-100, 100) for _ in positions]
+    forces[0], forces[-1] = min(forces[0], 0), max(forces[-1], 0)
+    thousandth = Fraction(1, 1000)
+    spring = zw.NonlinearSpring([x * thousandth for x in positions], [f * thousandth for f in forces])
+    bare = zw.Device(damping=0, coulomb_friction=0, resolution="0.002", sample_period="0.001", delay=0)
+    need = spring_need(bare, spring)
+    friction = need.coulomb_friction + Fraction(rng.randint(0, 60), 2000)
+    device = bare.replace(damping=need.held * Fraction(rng.randint(20, 110), 100), coulomb_friction=friction)
+    proved = certify_spring(device, spring).covered() is not None
+    found = slope_motion(finite_law(device, spring), losses_of(device), "linear")
+    assert not (proved and found)
 
 
 def test_too_little_coulomb_friction():

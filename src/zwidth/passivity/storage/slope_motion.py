@@ -201,7 +201,7 @@ class _Slopes:
 
     def _start(self, turns: _Turns) -> Fraction:
         """Where the hand begins: the nearest rest."""
-        return min(self._rests, key=lambda x: abs(float(x) / self._count - turns.low))
+        return self._rests[int(np.argmin(abs(self._rests_in_counts - turns.low)))]
 
     def _way_in(self, far: Fraction | float) -> int:
         """Samples on the way to the round, so many counts."""
@@ -225,6 +225,10 @@ class _Slopes:
     def _rests(self) -> list[Fraction]:
         ends = (None, None) if self.bounds is None else self.bounds.ends
         return resting_places(self.law, self.losses, ends)
+
+    @cached_property
+    def _rests_in_counts(self) -> Floats:
+        return np.array(self._rests, dtype=np.float64) / self._count
 
     @cached_property
     def _law(self) -> tuple[Floats, Floats]:
