@@ -271,7 +271,7 @@ def test_the_specifications_of_a_page_can_be_read(page, tmp_path):
             loop = specified(read, given)
             with_laws(loop.environment, read.get("law"), None, loop.device.motion)
             if "operator" in read:
-                build_touch(read["operator"], read.get("simulation"), {}, loop.device.motion)
+                build_touch(read["operator"], read.get("simulation"), {}, loop.device)
 
 
 def test_every_public_name_is_on_the_page_of_the_interface():

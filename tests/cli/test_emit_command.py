@@ -57,6 +57,14 @@ def test_many_detents_for_a_board(run):
     assert "--number double" in message
 
 
+def test_beyond_the_points_of_a_spring(run):
+    """Readings that go beyond them: what the law does there; of those that do not nothing is said."""
+    spring = "--type nonlinear-spring --positions='-1 mm, 1 mm' --forces='-0.1 N, 0.2 N' -o out --force"
+    told = run(f"emit haptic-paddle {spring} --travel '-2 .. 1 mm'").out
+    assert "the force stays, -0.1 N below -1 mm, 0.2 N above 1 mm" in " ".join(told.split())
+    assert "the force stays" not in run(f"emit haptic-paddle {spring} --travel '-0.9 .. 0.9 mm'").out
+
+
 def test_anyway(run):
     assert "ACTIVE" in run("emit haptic-paddle --stiffness 770 --anyway -o wall").out
     assert "NOT PROVED" in Path("wall", "law.h").read_text(encoding="utf-8")

@@ -213,6 +213,21 @@ def test_a_steady_buzz_between_detents_shakes_too(run):
     assert run(f"simulate {left} --duration 8").out.split()[0] == "SHAKES"
 
 
+def test_a_knob_that_was_typed_in_degrees(run, refused):
+    """It is answered in them whatever the hand was typed in, and the hand to begin with is that of a knob."""
+    knob = "--inertia 2e-5 --damping 2e-4 --coulomb-friction 0.002 --counts-per-turn 16384 --rate 2000"
+    knob += " --type nonlinear-spring --positions='-20 deg, 20 deg' --forces='-0.01, 0.01'"
+    hand = "--operator finger --operator.mass 5e-6 --operator.stiffness '0.1 N*m/rad' --operator.damping 1e-3"
+    hand += " --operator.force 0.01 --operator.start '-0.2 rad' --operator.speed '2 rad/s' --duration 0.1"
+    assert " deg" in run(f"simulate {knob} {hand}").out.split("device")[0]
+    assert "rad" not in run(f"simulate {knob} {hand}").out.split("hand  ")[0]
+    in_radians = knob.replace("-20 deg, 20 deg", "-0.3, 0.3")
+    assert " rad" in run(f"simulate {in_radians} {hand}").out.split("device")[0]
+    assert "begin with --operator fingers-on" in refused(f"simulate {knob} --duration 1")
+    wheel = knob.replace("2e-5", "0.01")
+    assert "begin with --operator hands-on" in refused(f"simulate {wheel} --duration 1")
+
+
 def test_hands_are_named_with_a_word_and_one_to_begin_with(refused):
     error = refused(f"{WALL} --duration 1")
     assert "begin with --operator typical" in error

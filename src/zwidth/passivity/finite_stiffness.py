@@ -209,9 +209,11 @@ def _claimed(witness: Witness | Gain, motion: Motion) -> float:
     less = witness.motion.rounds - motion.rounds
     energy = float(witness.exact_energy - less * witness.exact_gain)
     if energy <= 0:
+        whole, some = (shown(m.samples * witness.sample_period, "s", 3) for m in (witness.motion, motion))
         raise InputError(
-            f"in {motion.rounds} of its {witness.motion.rounds:,} rounds the motion has not gained yet what "
-            "the way in costs: there is too little to replay"
+            f"the motion goes on for {whole} before it has gained what the way in costs, and real hands are "
+            f"replayed for the first {some} of it: by then none has got anything out. Leave out --replay; of "
+            "a loop farther from its limit the motion is shorter"
         )
     return energy
 

@@ -26,6 +26,9 @@ from zwidth.passivity.formulas.colgate_stanley_brown import ideal_device, law_of
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome_evidence import Need
 from zwidth.passivity.scope import Law, Scope, scope_of
+from zwidth.passivity.storage.domain import losses_of
+from zwidth.passivity.storage.gain import Gain
+from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.value_iteration_fallback import with_value_iteration
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -98,10 +101,26 @@ def _spring(device: Device, law: Environment, asked: Scope, values: Values) -> V
         runaway = refute_spring(device, law)
         if runaway is not None:
             return replace(verdict, outcome="active", violation=runaway)
+        motion = _on_a_slope(device, law)
+        if motion is not None:
+            return replace(verdict, outcome="active", motion=motion)
         verdict = verdict if need.bounded else replace(verdict, finding="no lowest energy")
         return values(verdict)
+    if need.spare(b) < 0:  # Coulomb friction pays for what damping lacks
+        verdict = replace(verdict, needs=())
     limited = friction == need.coulomb_friction > 0 or need.spare(b) == 0
     return _proved(verdict, certificate, asked, limited)
+
+
+def _on_a_slope(device: Device, law: Environment) -> Gain | None:
+    """A motion on a rise that is too steep, within the device's force limit where there is one; or None."""
+    if device.exact("resolution") == 0:
+        return None
+    from zwidth.passivity.storage.slope_motion import slope_motion  # numpy takes its time
+
+    loop = finite_law(device, law), losses_of(device), device.motion
+    most = None if device.force_limit is None else ends(device.force_limit)[0]
+    return (slope_motion(*loop, most=most) if most else None) or slope_motion(*loop)
 
 
 def _proved(verdict: Verdict, certificate: Certificate, scope: Scope, at_limit: bool = False) -> Verdict:

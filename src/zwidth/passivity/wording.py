@@ -183,9 +183,9 @@ def takes_any(whose: str, out_of: str) -> str:
 def claim_of_a_motion(energy: float, seconds: float, depth: float, speed: float, unit: str) -> str:
     """The sentence of a motion that takes energy out [J; s; m, m/s or rad, rad/s], without its point."""
     taken = takes("the hand", energy, "loop", seconds)
-    return (
-        f"{taken}{', although it is more than any hand does' if is_beyond_hands(depth, speed, unit) else ''}"
-    )
+    if is_beyond_hands(depth, speed, unit):
+        return f"{taken}, although it is more than any hand does"
+    return f"{taken}, although no hand goes on for so long" if seconds > LONGEST_OF_HANDS else taken
 
 
 def takes(whose: str, energy: float, out_of: str, seconds: float) -> str:
@@ -198,13 +198,16 @@ def takes_once(whose: str, energy: float, out_of: str, seconds: float) -> str:
     return f"A motion of {whose} takes {shown(energy, 'J')} out of this {out_of} in {shown(seconds, 's')}"
 
 
-_LARGEST = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
+LARGEST_OF_HANDS = {"m": (1.0, 10.0), "rad": (20.0, 200.0)}
 """How far, and how fast, a hand goes at most [m, m/s; rad, rad/s]."""
+
+LONGEST_OF_HANDS = 60.0
+"""How long it goes on with a fast and regular motion [s]."""
 
 
 def is_beyond_hands(depth: float, speed: float, unit: str) -> bool:
     """Whether a motion is deeper [m; rad] or faster than any hand's."""
-    far, fast = _LARGEST[unit]
+    far, fast = LARGEST_OF_HANDS[unit]
     return depth > far or speed > fast
 
 

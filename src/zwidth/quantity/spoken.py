@@ -73,10 +73,23 @@ def _noting(noted: set[tuple[int, str]]) -> Iterator[None]:
         _NOTED.reset(token)
 
 
+@contextmanager
+def of_less_weight() -> Iterator[None]:
+    """Angles that are read inside are told where no others were typed: a hand is no part of the loop."""
+    noted = _NOTED.get()
+    if noted is None:
+        yield
+        return
+    inside: set[tuple[int, str]] = set()
+    with _noting(inside):
+        yield
+    noted.update((-1, unit) for unit in _told(frozenset(inside)))
+
+
 def note(unit: str, rank: int = 0) -> None:
     """Take down the angle in a unit that a person typed: "N*m/deg" has degrees.
 
-    The highest rank is told: 2 of what is asked for, 1 of a stiffness, 0 of anything else.
+    The highest rank is told: 2 of what is asked for, 1 of a stiffness, 0 of anything else, −1 of a hand's.
     """
     noted = _NOTED.get()
     if noted is not None:

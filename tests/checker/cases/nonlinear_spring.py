@@ -38,6 +38,12 @@ RISING = spring([[-2, -2], [0, 2], [1, 6], [3, 0]], coulomb_friction_N=4)
 FALLING = spring([[-3, -4], [1, 4], [2, 0]], damping_N_s_per_m="1/2", coulomb_friction_N=4)
 # every slope below 0: no damping without delay
 ONLY_FALLING = spring([[-1, 0], [1, 0]], damping_N_s_per_m=0, coulomb_friction_N=0)
+# too little damping, 2b/T = 1/4: g rises by 2 over 1, then falls by 1/4, and 3/2 left of friction pays
+PAID = spring([[0, 0], [1, "9/4"]], damping_N_s_per_m="1/16", coulomb_friction_N="15/4")
+PAID_ON = {  # the same where g falls faster than that on one side
+    "larger x": put(PAID, {"law.points_m_N": [[-1, 0], [0, "-9/4"], [1, 0]]}),
+    "smaller x": put(PAID, {"law.points_m_N": [[0, 0], [1, "9/4"], [2, 0]]}),
+}
 DAMPING, FRICTION = "damping is below", "below half a count"
 RUNS_AWAY = pull([[0, 0], [1, -2]], "1.999")
 BOTH = {"nonlinear spring": RISING, "endless pull": RUNS_AWAY}
@@ -68,6 +74,19 @@ CASES = [
     ),
     refused("friction, the largest slope", put(RISING, {"loop.coulomb_friction_N": 4 - TINY}), FRICTION),
     # x = 6 N/m · T = 3 and 3/8 of a sample more: w = x (½ + 3/8), b ≥ (w + x)/2
+    *(
+        case
+        for side, told in {"both sides": PAID, **PAID_ON}.items()
+        for case in edge(
+            f"friction pays for a short rise, {side}",
+            told,
+            put(told, {"loop.coulomb_friction_N": Fraction(15, 4) - TINY}),
+            DAMPING,
+            "pays for its rises",
+        )
+    ),
+    refused("friction pays, behind a delay", put(PAID, {"loop.delay_s": "1/2"}), DAMPING),
+    refused("friction pays, no damping", put(PAID, {"loop.damping_N_s_per_m": 0}), DAMPING),
     *edge(
         "a stiff spring and a part of a sample",
         STIFF := spring([[-1, -6], [1, 6]], damping_N_s_per_m="45/16", delay_s="3/16", coulomb_friction_N=6),

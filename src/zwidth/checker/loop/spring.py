@@ -53,6 +53,15 @@ def spring(told: Read) -> str:
 # and a storage Φ(x̃) + weights · Δx²_{n−i} passes on what a move owes for earlier ones.
 
 
+# Without delay what Coulomb friction has left over, f' = f_c − s Δ/2, pays for short rises that are steeper:
+# with g(x) = φ(x) − (2b/T) x, for every x and D > 0
+#
+#     ∫₀ᴰ (g(x + u) − g(x)) du ≤ f' D,     the same of −g(−x)
+#
+# The left side less the right one is largest where x is a point after which g rises, and x + D a point, or
+# where g falls through g(x) + f'.
+
+
 MOST_POINTS = 10_000
 _POSITIONS = "the positions of a nonlinear spring"
 NONLINEAR_SPRING = document(
@@ -73,11 +82,34 @@ def nonlinear_spring(told: Read) -> str:
     largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
     part = late % 1
     held = (largest / 2 + late * steepest) * period
-    if b < held or 4 * b * (b - held) < part * (1 - part) * (steepest * period) ** 2:
-        raise Invalid("the damping is below what the hold and the delay of this spring need")
-    if 2 * loop.coulomb_friction < steepest * loop.resolution:
+    left = loop.coulomb_friction - steepest * loop.resolution / 2
+    if left < 0:
         raise Invalid("the Coulomb friction is below half a count of the steepest part of this spring")
+    if b < held or 4 * b * (b - held) < part * (1 - part) * (steepest * period) ** 2:
+        mirrored = [(-x, -f) for x, f in reversed(points)]
+        if late > 0 or b == 0 or not all(_paid(side, 2 * b / period, left) for side in (points, mirrored)):
+            raise Invalid("the damping is below what the hold and the delay of this spring need")
+        return "what Coulomb friction has left over its steepest part pays for its rises, and it holds within"
     return "the damping covers its largest slope, the Coulomb friction its steepest part, and it holds within"
+
+
+def _paid(points: list[tuple[Fraction, Fraction]], drag: Fraction, left: Fraction) -> bool:
+    """Whether friction pays for each rise of g(x) = φ(x) − drag · x to larger x; beyond the end g falls."""
+    points = [(x, f - drag * x) for x, f in points]
+    values = [g for _, g in points]
+    far = (max(values) - min(values)) / drag + 1  # where g is below all that it was
+    points.append((points[-1][0] + far, points[-1][1] - drag * far))
+    begins = [i for i, ((_, g0), (_, g1)) in enumerate(pairwise(points)) if g1 > g0]
+    spend(len(begins) * len(points), each=40)
+    for i in begins:
+        level, owed = points[i][1] + left, Fraction(0)
+        for (x0, g0), (x1, g1) in pairwise(points[i:]):
+            if g1 < level < g0 and owed + (g0 - level) ** 2 * (x1 - x0) / (g0 - g1) / 2 > 0:
+                return False
+            owed += ((g0 + g1) / 2 - level) * (x1 - x0)
+            if owed > 0:
+                return False
+    return True
 
 
 def endless_pull(told: Read) -> str:

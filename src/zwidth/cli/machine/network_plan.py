@@ -291,7 +291,7 @@ def _device(row: Table) -> tuple[str, Held]:
         raise InputError(f"{row.label}: safety is of a real device, and this one has no connection")
     usual = usual_kind(device)
     hand = _inner(row, "operator", f'{{ type = "{usual}" }}', {"type": usual})
-    return row.text("name"), Held(device, build_hand(hand, device.motion), wait=wait)
+    return row.text("name"), Held(device, build_hand(hand, device), wait=wait)
 
 
 def _real(row: Table, device: Device, wait: Fraction) -> Held:

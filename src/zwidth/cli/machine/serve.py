@@ -29,6 +29,7 @@ from zwidth.model.specification.table import Table
 
 if TYPE_CHECKING:
     from zwidth.machine.servo import Connection, Placement, Safety, Servo
+    from zwidth.model.device import Device
 
 
 FACES = ("terminal", "browser", "foxglove")
@@ -97,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
             loop.device,
             law,
             connection,
-            hand=_hand(arguments, tables, loop.device.motion, connection),
+            hand=_hand(arguments, tables, loop.device, connection),
             duration=arguments.duration,
             safety=_safety(arguments, tables, loop.device.motion),
             placement=placement,
@@ -229,7 +230,7 @@ def _safety(arguments: argparse.Namespace, tables: Mapping[str, Table], motion: 
 
 
 def _hand(
-    arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str, connection: Connection | None
+    arguments: argparse.Namespace, tables: Mapping[str, Table], device: Device, connection: Connection | None
 ) -> Any:
     from zwidth.cli.simulate.tables import THROWN, build_hand, operator_parameters
     from zwidth.model.operator import HandsOff
@@ -239,11 +240,11 @@ def _hand(
         return None
     if connection is not None:
         raise InputError(f"[{OPERATOR}] holds the simulated device; a real one is held by a person: drop it")
-    hand = build_hand(merged(tables.get(OPERATOR), typed, OPERATOR), motion, OPERATOR)
+    hand = build_hand(merged(tables.get(OPERATOR), typed, OPERATOR), device, OPERATOR)
     if isinstance(hand, HandsOff):
         raise InputError(
             "hands-off moves nothing, and a served device begins at rest; one that is let go on its way: "
-            f'zwidth simulate … --operator hands-off --initial-velocity "{THROWN[motion]}"'
+            f'zwidth simulate … --operator hands-off --initial-velocity "{THROWN[device.motion]}"'
         )
     return hand
 

@@ -87,4 +87,4 @@ def _hand(
         return usual_hand(pair.leader) if leads else HandsOff()
     if not simulated:
         raise InputError(f"[{name}] holds a simulated arm; a real one is held by a person: drop it")
-    return build_hand(merged(tables.get(name), typed, name), pair.motion, name)
+    return build_hand(merged(tables.get(name), typed, name), pair.leader if leads else pair.follower, name)

@@ -123,7 +123,7 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
     environment = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
     words = given(arguments, keys)
-    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device)
     duration, remarks = touch.duration, [made_for_a_handle(touch.operator, loop.device)]
     if duration is None:
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
@@ -230,9 +230,9 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
 
     pair = pair_with_options(arguments, tables)
     typed = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
-    touch = build_touch(tables.get("operator"), tables.get("simulation"), typed, pair.motion)
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), typed, pair.leader)
     of_follower = given(arguments, [p.key for p in follower_parameters()])
-    follower = build_follower(tables.get(FOLLOWER), of_follower, pair.motion)
+    follower = build_follower(tables.get(FOLLOWER), of_follower, pair.follower)
     if touch.duration is None:
         raise InputError('no duration is given: set --duration, for example --duration "2 s"')
     return with_bar(simulated, "samples")(pair, touch.operator, follower, touch.duration, **touch.options)

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from zwidth.cli.parsing import Parameter
 from zwidth.errors import InputError
 from zwidth.missing import suggestion
+from zwidth.model.device import Device
 from zwidth.model.device import amplifier as amplifiers
 from zwidth.model.device.amplifier import Amplifier
 from zwidth.model.environment import Wall
@@ -28,8 +29,10 @@ from zwidth.model.operator import (
     RecordedForce,
     WitnessMotion,
 )
+from zwidth.model.operator.named import usual_kind
 from zwidth.model.specification.table import COMMAND_LINE, Table, located, plain, quoted
 from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.spoken import of_less_weight
 from zwidth.quantity.units import parse_number
 
 OPERATOR, FOLLOWER = "operator", "follower_operator"
@@ -56,9 +59,6 @@ IN_A_WORD: Mapping[str, str] = MappingProxyType(
     }
 )
 """What each hand is."""
-
-_BEGIN = {"linear": "typical", "rotary": "hands-on"}
-"""The hand to begin with, by the motion of the device."""
 
 THROWN, _BESIDE = {"linear": "0.2 m/s", "rotary": "360 deg/s"}, {"linear": "1 mm", "rotary": "5 deg"}
 """How a device is let go, for example, by its motion."""
@@ -151,9 +151,10 @@ def _shared() -> dict[str, tuple[Quantity, list[str]]]:
 
 
 def build_touch(
-    operator: Table | None, simulation: Table | None, overrides: Mapping[str, str], motion: str
+    operator: Table | None, simulation: Table | None, overrides: Mapping[str, str], device: Device
 ) -> Touch:
-    """The hand and the run that tables and command line describe."""
+    """The hand on a device and the run that tables and command line describe."""
+    motion = device.motion
     hand_table = operator or Table(COMMAND_LINE, {})
     run_table = simulation or Table(COMMAND_LINE, {})
     for key, value in overrides.items():
@@ -163,7 +164,7 @@ def build_touch(
             hand_table.override(key.removeprefix(f"{OPERATOR}."), value)
         else:
             run_table.override(key, value)
-    hand = build_hand(hand_table, motion, OPERATOR)
+    hand = build_hand(hand_table, device, OPERATOR)
     run_table.check_keys(KEYS, "a simulation")
     options = _options(run_table, motion)
     if isinstance(hand, HandsOff) and not {"initial_position", "initial_velocity"} & options.keys():
@@ -174,7 +175,9 @@ def build_touch(
     return Touch(hand, options.pop("duration", None), options)
 
 
-def build_follower(table: Table | None, overrides: Mapping[str, str], motion: str) -> Operator | Wall | None:
+def build_follower(
+    table: Table | None, overrides: Mapping[str, str], device: Device
+) -> Operator | Wall | None:
     """What holds the follower of a pair, as tables and command line describe it; None for nobody."""
     table = table or Table(COMMAND_LINE, {})
     for key, value in overrides.items():
@@ -182,12 +185,12 @@ def build_follower(table: Table | None, overrides: Mapping[str, str], motion: st
     if not table.values:
         return None
     if table.values.get("type") != WALL:
-        return build_hand(table, motion, FOLLOWER)
+        return build_hand(table, device, FOLLOWER)
     table.check_keys(("type", *_WALL_KEYS), "a wall that the follower meets")
     if "stiffness" not in table.values:
         raise InputError(f"{table.label}: the wall that the follower meets needs a stiffness")
     numbers = {
-        name: _number(table, name, quantity, motion)
+        name: _number(table, name, quantity, device.motion)
         for name, quantity in _WALL_KEYS.items()
         if name in table.values
     }
@@ -195,13 +198,15 @@ def build_follower(table: Table | None, overrides: Mapping[str, str], motion: st
         return Wall(numbers["stiffness"], numbers.get("damping", 0))
 
 
-def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
-    """The hand that a table describes; `option` is what it is called on the command line."""
+def build_hand(table: Table, device: Device, option: str = OPERATOR) -> Operator:
+    """The hand on a device that a table describes; `option` is what it is called on the command line."""
+    motion = device.motion
+    begin = "typical" if motion == "linear" else usual_kind(device)
     if "type" not in table.values:
         kinds = "; ".join(f"{name}, {IN_A_WORD[name]}" for name in _fitting(motion))
         flag = f"--{option.replace('_', '-')}"
         raise InputError(
-            f'no hand is given: begin with {flag} {_BEGIN[motion]} --duration "2 s", or take one of: {kinds}'
+            f'no hand is given: begin with {flag} {begin} --duration "2 s", or take one of: {kinds}'
         )
     kind = table.text("type")
     if kind == RECORD:
@@ -209,20 +214,19 @@ def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
     if kind == WITNESS:
         return _witness(table)
     if kind not in OPERATORS:
-        hint = f"{suggestion(kind, _fitting(motion))}; begin with {_BEGIN[motion]}"
+        hint = f"{suggestion(kind, _fitting(motion))}; begin with {begin}"
         raise InputError(f"{table.where('type')}: there is no hand {quoted(kind)}; {hint}")
     build: type[ParametricOperator] = OPERATORS[kind]
     if build.motion not in ("", motion):
         raise InputError(
-            f"{table.where('type')}: {kind} holds a device that turns, this one is {motion}: take "
-            f"{_BEGIN[motion]}"
+            f"{table.where('type')}: {kind} holds a device that turns, this one is {motion}: take {begin}"
         )
     parameters = build.parameters()
     table.check_keys(("type", *parameters), f"the hand {quoted(kind)}")
-    values = {}
-    for name in table.values:
-        if name != "type":
-            values[name] = _number(table, name, parameters[name], motion)
+    with of_less_weight():
+        values = {
+            name: _number(table, name, parameters[name], motion) for name in table.values if name != "type"
+        }
     with located(table.label):
         try:
             return build(**values)

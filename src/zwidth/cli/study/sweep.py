@@ -305,7 +305,7 @@ def _touch(arguments: argparse.Namespace, begun: Mapping[str, str]) -> Asked:
     tables = read_tables(arguments.sources, TABLES)
     words = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
     device, law = _loop(arguments, tables, begun)
-    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, device.motion)
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, device)
     return Asked(device, law, touch.operator, _run(touch))
 
 

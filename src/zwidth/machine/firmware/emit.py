@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import floor
 from pathlib import Path
@@ -180,8 +181,21 @@ class Emitted(Result):
             *uncounted,
             actuator,
             f"readings from {low * spoken(unit)[0]:.10g} to {to}; beyond them nothing is claimed",
+            *self._beyond_points(),
             f"a force at each sample, {shown(late, 's')} after its reading (the delay), held to the next",
         )
+
+    def _beyond_points(self) -> Iterator[str]:
+        """What a spring given by points does at readings beyond its first and its last one."""
+        points, motion = self.environment.met.points, self.device.motion
+        count = self.machine.law.resolution or 1.0
+        low, high = (end * count for end in self.machine.counts)
+        if points and (low < points[0][0] or high > points[-1][0]):
+            (first, below), (last, above) = (
+                (told_quantity(x, "position", motion), told_quantity(f, "force", motion))
+                for x, f in (points[0], points[-1])
+            )
+            yield f"beyond the points the force stays, {below} below {first}, {above} above {last}"
 
     def to_dict(self) -> dict[str, Any]:
         """It as plain data."""

@@ -4,7 +4,8 @@
 
 L ≥ 0 is the largest slope, s the largest |slope|, the delay d whole samples and a part α of one; of whole
 samples it is b ≥ w T.  Negative slopes cost nothing without delay, as long as the potential has a lowest
-value: beyond its ends the spring must not pull away.
+value: beyond its ends the spring must not pull away.  Without delay what Coulomb friction has left over s Δ/2
+pays for short rises that are steeper, as `checker.loop.spring` works out.
 The proof is in the documentation; where its steepest part is long enough, both conditions are necessary.
 """
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
-from math import ceil
+from math import ceil, floor
 from typing import Any, NamedTuple
 
 from zwidth.checker import verify
@@ -118,7 +118,11 @@ def gain(iteration: ValueIteration[Grid], motion: str, bounds: HandBounds | None
     bounds = bounds or hand_bounds(grid.law, grid.losses, grid.domain)
     for halvings in range(grid.count_steps.bit_length() - 1, _NEAREST, 4):
         round_ = [_place(grid, node, cell, halvings) for node, cell in iteration.cycle]
-        start = _outside(grid)
+        bare = grid.law.surface != "none" or not grid.law.points
+        rests = [Fraction(0)] if bare else resting_places(grid.law, grid.encoder, bounds.ends)
+        start = min(rests, key=lambda x: abs(x - round_[0]), default=None)
+        if start is None:
+            return None
         approach = _steps(start, round_[0], grid.domain.speed * grid.losses.resolution)
         x = [*approach, *round_[1:], round_[0]]
         part = Repeat(len(approach) - 1, len(x) - 1, 1)
@@ -144,15 +148,20 @@ def _place(grid: Grid, node: int, cell: int, halvings: int) -> Fraction:
     return x * grid.losses.resolution
 
 
-def _outside(grid: Grid) -> Fraction:
-    """A place where the law gives no force to a hand that rests there."""
-    if grid.law.surface != "none" or not grid.law.points:
-        return Fraction(0)
-    resolution = grid.losses.resolution
-    for n in sorted(range(grid.domain.lowest, grid.domain.highest + 1), key=abs):
-        if grid.law.force((n * resolution,)) == 0:
-            return n * resolution
-    return Fraction(0)
+def resting_places(
+    law: FiniteLaw, losses: Losses, ends: tuple[Fraction | None, Fraction | None]
+) -> list[Fraction]:
+    """Amid the counts next to where the force rises through 0: friction holds a handle there.
+
+    `law`: a spring given by points; `ends`: between which positions, None: no bound.
+    """
+    count, friction = losses.resolution, max(f for f, _ in losses.models)
+    zeros = [x for x, f in law.points if f == 0]
+    zeros += [x0 - f0 * (x1 - x0) / (f1 - f0) for (x0, f0), (x1, f1) in pairwise(law.points) if f0 < 0 < f1]
+    readings = sorted({n * count for x in zeros for n in (floor(x / count), ceil(x / count))})
+    low, high = ends
+    inside = (x for x in readings if (low is None or low <= x) and (high is None or x + count <= high))
+    return [x + count / 2 for x in inside if abs(law.force((x,))) <= friction]
 
 
 def _steps(start: Fraction, end: Fraction, most: Fraction) -> list[Fraction]:
@@ -178,28 +187,29 @@ def _recomputed(document: dict[str, Any], settling: int) -> tuple[Fraction, Frac
 
 def _document(grid: Grid, motion: Motion, kind: str, bounds: HandBounds) -> dict[str, Any]:
     law = grid.law_document(kind, motion.positions if grid.every > 1 else None)
-    document = motion_document("contact motion", grid.encoder, law, bounds, motion, kind)
-    if motion.switch_positions:
-        length = unit_key("position", kind).removeprefix("position_")
-        document[f"switch_positions_{length}"] = list(motion.switch_positions)
-    return document
+    return motion_document("contact motion", grid.encoder, law, bounds, motion, kind)
 
 
 def motion_document(
-    kind: str, losses: Losses, law: dict[str, Any], bounds: HandBounds, path: Motion, motion: str
+    kind: str, losses: Losses, law: dict[str, Any], bounds: HandBounds | None, path: Motion, motion: str
 ) -> dict[str, Any]:
-    """A motion, of which a part is repeated, as data for the checker; `motion` is "linear" or "rotary"."""
+    """A motion, of which a part is repeated, as data for the checker; `motion` is "linear" or "rotary".
+
+    `bounds`: that the hand keeps to; None: nothing is said of them.
+    """
     length = unit_key("position", motion).removeprefix("position_")
+    switches = {f"switch_positions_{length}": list(path.switch_positions)} if path.switch_positions else {}
     return {
         "format": FORMAT,
         "kind": kind,
         "loop": loop_document(losses, motion),
         "law": law,
-        "bounds": bounds.document(motion),
+        **({} if bounds is None else {"bounds": bounds.document(motion)}),
         unit_key("sample_period"): losses.period,
         "energy_J": Fraction(0),
         "repeats": path.repeats[0]._asdict(),
         f"positions_{length}": list(path.positions),
+        **switches,
     }
 
 

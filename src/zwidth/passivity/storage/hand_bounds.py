@@ -62,10 +62,15 @@ class HandBounds:
             f"speed_{length}_per_s": exact_text(self.speed),
             f"depth_{length}": exact_text(self.max_depth),
         }
-        if self.outside is not None:
-            far = self.max_depth if self.outside == self.penetration else self.outside
-            document[f"outside_{length}"] = exact_text(far)
+        if self.ends[0] is not None:
+            document[f"outside_{length}"] = exact_text(-self.ends[0])
         return document
+
+    @property
+    def ends(self) -> tuple[Fraction | None, Fraction]:
+        """Between which positions a motion that refutes stays [m; rad]; None: as far outside as it likes."""
+        far = self.max_depth if self.outside == self.penetration else self.outside
+        return None if far is None else -far, self.max_depth
 
 
 def bounds_given(device: Device, penetration: object, speed: object) -> tuple[Exact | None, Exact | None]:

@@ -14,10 +14,12 @@ Maxwell branch or a one-pole filter (see `relaxing`).
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import floor
+from operator import itemgetter
 from typing import Any, Literal
 
 from zwidth.errors import InputError
@@ -133,12 +135,11 @@ class FiniteLaw:
 
 def interpolated(points: tuple[tuple[Fraction, Fraction], ...], x: Fraction) -> Fraction:
     """The force of a spring given by points: linear between them, constant beyond."""
-    if x <= points[0][0]:
-        return points[0][1]
-    for (x0, f0), (x1, f1) in zip(points, points[1:], strict=False):
-        if x <= x1:
-            return f0 + (f1 - f0) * (x - x0) / (x1 - x0)
-    return points[-1][1]
+    i = bisect_right(points, x, key=itemgetter(0))
+    if i in (0, len(points)):
+        return points[max(i - 1, 0)][1]
+    (x0, f0), (x1, f1) = points[i - 1 : i + 1]
+    return f0 + (f1 - f0) * (x - x0) / (x1 - x0)
 
 
 def finite_law(

@@ -28,6 +28,7 @@ from zwidth.passivity.storage.grid import Approximation, Grid
 from zwidth.passivity.storage.hand_bounds import HandBounds, bounds_given, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.relaxing_grid import RelaxingGrid
+from zwidth.passivity.storage.slope_motion import slope_motion
 from zwidth.passivity.storage.storage_function import CELLS, StorageFunction, has_cells, prove_on_cells
 from zwidth.passivity.storage.value_iteration import Progress, Until, freely, value_iteration
 from zwidth.quantity.exact import RealLike
@@ -139,6 +140,8 @@ class DynamicProgram:
 
     def refute(self, steps: int, until: Until | None = None, progress: Progress | None = None) -> Gain | None:
         """A motion that gains, recomputed exactly, or None."""
+        if self.law.points and (found := slope_motion(self.law, self.losses, self.motion, self.bounds)):
+            return found
         if self.domain.within.highest < 1:  # no reading inside lies within the bounds
             return None
         for every, domain in grids(self.law, self.losses, self.domain):
