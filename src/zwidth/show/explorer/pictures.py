@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, nan
 from typing import Any
 
 from bokeh.models import (
@@ -24,7 +24,7 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import in_words, shown
 from zwidth.show.explorer.computing import Region, Touch
 from zwidth.show.plots.linear import damping_range, refined_curve
 from zwidth.show.plots.planes import (
@@ -369,7 +369,7 @@ class TouchPictures:
         self._source.data = {
             "time": touch.times,
             "position": [x * value for value in touch.positions],
-            "inside": [x * max(value, 0.0) for value in touch.positions],
+            "inside": [x * max(value, 0.0) if touch.one_sided else nan for value in touch.positions],
             "hand": [f * value for value in touch.hand_forces],
             "actuator": [f * value for value in touch.actuator_forces],
             "in_": [w * max(value, 0.0) for value in touch.works],
@@ -378,12 +378,12 @@ class TouchPictures:
         for made in self._all:
             made.visible = True
         self._inside.visible = self.position.legend[0].items[1].visible = touch.one_sided
-        self.position.yaxis[0].axis_label = f"position [{x_unit}]"
-        self.force.yaxis[0].axis_label = f"force [{f_unit}]"
+        self.position.yaxis[0].axis_label = f"{in_words('position', motion)} [{x_unit}]"
+        self.force.yaxis[0].axis_label = f"{in_words('force', motion)} [{f_unit}]"
         self.energy.yaxis[0].axis_label = f"work of the hand [{w_unit}]"
         peak, peak_unit = scale([touch.peak_force], force)
         most = f"{number(touch.peak_force * peak)} {peak_unit}"
-        said = f"{touch.operator}. Largest force {most}."
+        said = f"{touch.operator}. Largest {in_words('force', motion)} {most}."
         out, unit = scale([touch.extracted], "J")
         if touch.extracted > 0:
             energy = f"The hand got out {number(touch.extracted * out)} {unit} more than it had put in."
