@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, nan
+from math import isfinite
 from typing import Any
 
 from bokeh.models import (
@@ -330,6 +330,7 @@ class TouchPictures:
         self._source = ColumnDataSource({name: [] for name in columns})
         time = DataRange1d(range_padding=0)
         self.position: Any = new_figure("time [s]", "position", x_range=time, height=230)
+        self.position.y_range.only_visible = True  # of a lock far from 0 there is no shade from 0 on
         self.position.line(
             "time", "position", source=self._source, color=BLUE, line_width=2, legend_label="handle"
         )
@@ -369,7 +370,7 @@ class TouchPictures:
         self._source.data = {
             "time": touch.times,
             "position": [x * value for value in touch.positions],
-            "inside": [x * max(value, 0.0) if touch.one_sided else nan for value in touch.positions],
+            "inside": [x * max(value, 0.0) for value in touch.positions],
             "hand": [f * value for value in touch.hand_forces],
             "actuator": [f * value for value in touch.actuator_forces],
             "in_": [w * max(value, 0.0) for value in touch.works],

@@ -137,7 +137,9 @@ def _of_a_key(name: str, key: Parameter, value: Any, motion: str) -> tuple[str, 
     if hasattr(value, "describe"):
         return in_words(name), value.describe()
     if isinstance(value, (tuple, list)) and len(str(value)) > 60:
-        return in_words(name), f"{len(value)} of them"
+        return in_words(name, motion), f"{len(value)} of them"
+    if isinstance(value, tuple) and all(isinstance(one, Exact) for one in value):
+        return in_words(name, motion), ", ".join(_value(one, key.unit_for(motion)) for one in value)
     return in_words(name), str(value)
 
 
