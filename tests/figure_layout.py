@@ -60,7 +60,7 @@ def faults_of_ours(figure: Figure) -> list[str]:
     found = faults(figure)
     for axes in figure.axes:
         found += [*_nameless(figure, axes), *_alike(axes)]
-    return [*found, *_texts_over_texts(figure), *_small(figure), *_empty(figure)]
+    return [*found, *_texts_over_texts(figure), *_cut(figure), *_small(figure), *_empty(figure)]
 
 
 def _shown(figure: Figure) -> list[Axes]:
@@ -259,14 +259,23 @@ def _lightness(colour: str) -> float:
     return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
 
 
+def _texts(figure: Figure) -> list[Text]:
+    """Every text that is seen, numbers along axes with them."""
+    texts = [t for t in figure.findobj(Text) if t.get_text().strip() and t.get_visible() and _seen(t)]
+    return [text for text in texts if _is_drawn(text)]
+
+
+def _cut(figure: Figure) -> Iterator[str]:
+    """To the dot, as the fonts here are those of the canvas."""
+    for text in _texts(figure):
+        box, whole = text.get_window_extent(), figure.bbox
+        if min(box.x0, box.y0) < -OVER or box.x1 > whole.x1 + OVER or box.y1 > whole.y1 + OVER:
+            yield f"cut at the edge, by a little: {text.get_text()!r}"
+
+
 def _texts_over_texts(figure: Figure) -> Iterator[str]:
-    """Any two, numbers along axes with them; turned ones have no box of their own."""
-    texts = [
-        text
-        for text in figure.findobj(Text)
-        if text.get_text().strip() and text.get_visible() and _seen(text) and text.get_rotation() % 90 == 0
-    ]
-    shown = [text for text in texts if _is_drawn(text)]
+    """Any two; turned ones have no box of their own."""
+    shown = [text for text in _texts(figure) if text.get_rotation() % 90 == 0]
     boxes = [text.get_window_extent() for text in shown]
     for (one, first), (other, second) in combinations(zip(shown, boxes, strict=True), 2):
         wide = min(first.x1, second.x1) - max(first.x0, second.x0)

@@ -6,15 +6,19 @@ import os
 import re
 import sys
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import zwidth as zw
 from zwidth.cli.main import main
+from zwidth.data.gains.controllers import CartesianGains, Controllers, JointLaw
+from zwidth.machine.servo.recording.replayed import Replay
 from zwidth.model.arms.reading import built_in
 from zwidth.showing import (
     OBEYED,
@@ -34,6 +38,13 @@ SCRIPT = "<script>alert(1)</script>"
 HOSTILE = f"{SCRIPT} $\\frac{{$ & \x1b[2J\x9b31m \u202e\"'"
 SOURCE = sorted(Path(zw.__file__).parent.rglob("*.py"))
 DEVICE = zw.Device(mass=0.04, damping=0.15, sample_period=0.001, name=HOSTILE)
+LOG = zw.Log.from_arrays(time=np.arange(50) / 1000, position=np.sin(np.arange(50)))
+CONTROLLERS = Controllers(
+    joints=(JointLaw("shoulder", Fraction(201, 2), Fraction(0), Fraction(5, 2), "file"),),
+    cartesian=(CartesianGains((1, 2, 3, 4, 5, 6), (1,) * 6, 0, 0, None, "file"),),
+    rate=Fraction(1000),
+    notes=(HOSTILE,),
+)
 
 
 def test_only_html_becomes_a_part_of_html():
@@ -133,7 +144,7 @@ def test_names_are_escaped_in_notebooks(trace):
     active = zw.check(DEVICE, zw.Wall(2000))
     shown = (
         DEVICE, verdict, verdict.certificate, active, active.witness, zw.replay(active), trace.zwidth.energy,
-        zw.traces.compare_traces({HOSTILE: trace}),
+        zw.traces.compare_traces({HOSTILE: trace}), replace(LOG, source=HOSTILE), CONTROLLERS,
     )  # fmt: skip
     for page in (one._repr_html_() for one in shown):
         assert isinstance(page, Html)
@@ -141,6 +152,29 @@ def test_names_are_escaped_in_notebooks(trace):
         assert not OBEYED.search(page)
         ElementTree.fromstring(page)
     assert "&lt;script&gt;" in DEVICE._repr_html_()
+
+
+def test_what_is_read_and_what_is_found_says_what_it_is():
+    """A log, gains of an arm, a replay, what the checker says: in a terminal a few lines, and no fields."""
+    assert repr(LOG) == (
+        "arrays: 50 ms, 50 samples, one every 1 ms; encoder step none; forces: none\n"
+        "· sample period 1 ms from the stamps\n· the positions show no step; the resolution is taken as 0\n"
+        "· no column of the hand's force is used"
+    )
+    assert repr(CONTROLLERS).splitlines()[:4] == [
+        "joint     stiffness     integral    damping",
+        "            N·m/rad  N·m/(rad·s)  N·m·s/rad",
+        "shoulder      100.5            0        2.5",
+        "at the end                  x  y  z  about x  about y  about z",
+    ]
+    assert "rate: 1 kHz" in repr(CONTROLLERS)
+    replayed = Replay(simulated=None, samples=2000, different=3, largest=0.25, motion="rotary")
+    told = "the simulation gives another force in 3 of 2,000 samples, by 0.25 N·m at most"
+    assert repr(replayed) == told
+    assert told in replayed._repr_html_()
+    verified = zw.verify(zw.check(DEVICE, zw.Wall(2000)).witness.to_dict())
+    assert repr(verified) == f"proved: {verified.reason}"
+    assert not OBEYED.search(repr(zw.verify({"kind": HOSTILE})))
 
 
 def test_what_xarray_shows_is_not_obeyed_either(trace, tmp_path):

@@ -67,6 +67,11 @@ def test_of_a_wheel_the_inertia_is_told_once_and_as_that() -> None:
     linear = _origins(
         WHEEL.replace("[device]", "[device]\nhandle_radius = 0.1").replace('"80 N*m/rad"', "80")
     )
+    spring = WHEEL.partition("[environment]")[0] + (
+        '[environment]\ntype = "nonlinear-spring"\npositions = ["7.5 rad", 8]\nforces = [0, 6]\n'
+    )
+    told = _origins(spring)
+    assert (told["angles"][0], told["torques"][0]) == ("7.5 rad, 8 rad", "0 N·m, 6 N·m")
     assert linear["mass m"] == ("2 kg", "wheel.toml, [device]: inertia")
     assert linear["inertia"][0] == "0.02 kg·m^2"
 

@@ -48,6 +48,10 @@ class Verified(NamedTuple):
     rows: tuple[Row, ...] = ()
     surplus: tuple[tuple[float, ...], ...] = ()
 
+    def __repr__(self) -> str:
+        said = f"{'proved' if self.valid else 'refused'}: {self.reason}"
+        return "".join(c if c.isprintable() else "?" for c in said)
+
 
 def verify(document: Mapping[str, Any]) -> Verified:
     """Check one certificate, violation or motion, given as plain JSON data; never raises for what it says."""

@@ -43,9 +43,15 @@ def quantity_unit(name: str, motion: str = "linear") -> str:
     return unit_text(GLOSSARY[name].unit_for(motion))
 
 
-def in_words(key: str) -> str:
-    """A key as words, in which Coulomb is a name."""
-    return key.replace("_", " ").replace("coulomb", "Coulomb")
+_TURNING = {
+    "mass": "inertia", "force": "torque", "forces": "torques", "position": "angle", "positions": "angles",
+}  # fmt: skip
+
+
+def in_words(key: str, motion: str = "linear") -> str:
+    """A key as words, in which Coulomb is a name; the "force_limit" of what turns is a "torque limit"."""
+    words = key.replace("_", " ").replace("coulomb", "Coulomb").split(" ")
+    return " ".join(_TURNING.get(word, word) if motion == "rotary" else word for word in words)
 
 
 def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) -> str:
@@ -63,7 +69,7 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
         return "any" if number > 0 else "none"
     factor, unit = spoken(unit)
     number *= factor
-    power, name = _prefix(number, unit, digits)
+    power, name = prefixed(number, unit, digits)
     return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()
 
 
@@ -78,11 +84,11 @@ def _between(value: Interval, unit: str, digits: int) -> str:
     ends = (float(value.low) * factor, float(value.high) * factor)
     small, large = sorted(abs(end) for end in ends)
     least = small if small and large < _FAR * small else large
-    power, name = _prefix(least, unit, digits)
+    power, name = prefixed(least, unit, digits)
     return f"{' … '.join(_rounded(end / 10.0**power, digits) for end in ends)} {name}".rstrip()
 
 
-def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
+def prefixed(number: float, unit: str, digits: int) -> tuple[int, str]:
     """The power of ten of a prefix, and the unit with it."""
     size, name = float(f"{abs(number):.{digits}g}"), unit_text(unit)
     plain = unit.replace("·", "*")

@@ -135,10 +135,33 @@ def test_what_turns_is_turned_round(page: Page, tmp_path: Path, inertia: float, 
     _frames(page, 40)
     pointer = _recording(page)[1][:, 1]
     assert pointer[-1] - pointer[0] == pytest.approx(np.radians(270), abs=0.05)
-    told = f"/^{thing} at [^m]*°, torque [^m]* N·m, held$/"
+    told = f"/^{thing} at [^m]*°, torque [^m]* m?N·m, held$/"
     page.wait_for_function(f"{told}.test(document.querySelector('#stage').ariaValueText)")
     assert f"Take the {thing}" in page.locator("#do").inner_text()
     assert "inertia" in page.locator("#numbers").inner_text()
+
+
+@one_size
+def test_two_wheels_say_where_they_are_and_the_page_how_high_it_is(page: Page, tmp_path: Path) -> None:
+    """Angle and torque below each; around it what frames the page hears its height."""
+    wheel = zw.rotary(inertia=0.02, damping=0.02, coulomb_friction=0.01, resolution=1e-3, rate=1000)
+    place = tmp_path / "play.html"
+    place.write_text(play_page([play_pair(zw.Pair(wheel, wheel, stiffness=20))]), encoding="utf-8")
+    page.add_init_script(
+        """
+        window.written = new Set();
+        const write = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function (words, ...place) {
+            window.written.add(words);
+            return write.call(this, words, ...place);
+        };
+        addEventListener("message", ({ data }) => { window.high = data; });
+        """
+    )
+    page.goto(place.as_uri())
+    for who in ("leader", "follower"):
+        page.wait_for_function(f"[...written].some((words) => /^{who} [^ ]*°, [^ ]* N·m$/.test(words))")
+    page.wait_for_function("window.high === document.querySelector('#play').offsetHeight")
 
 
 @one_size

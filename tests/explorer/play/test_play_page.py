@@ -11,8 +11,10 @@ import pytest
 from explorer.play.engines import run_node
 
 import zwidth as zw
+from zwidth.show.explorer.computing import touched
 from zwidth.show.explorer.play import Played, play_page, presets
 from zwidth.show.explorer.play import played as play
+from zwidth.show.explorer.state import State
 
 MOST_BYTES = 300_000
 
@@ -67,6 +69,26 @@ def test_numbers_have_their_units(loops: list[Played]) -> None:
     assert first["law"] == "wall, 300 N/m"
     assert (first["resolution"], first["sample period"]) == ("22.4 µm", "1 ms")
     assert first["hand"] == "6 g, 500 N/m, 1.7 N·s/m"
+
+
+def test_what_begins_far_away_is_within_reach() -> None:
+    """The lock of a wheel at 450°; the hand of a touch meets it there, behind a law in a chain too."""
+    wheel = zw.rotary(
+        inertia=0.05, damping=0.02, coulomb_friction=0.05, resolution=1e-4, rate=1000, force_limit=8
+    )
+    angles = [f"{degrees} deg" for degrees in (-480, -450, 0, 450, 480)]
+    lock = zw.NonlinearSpring(angles, [-6, 0, 0, 0, 6])
+    chain = zw.rendering.render(lock, zw.rendering.Saturation())
+    for law in (lock, chain):
+        loop = play(wheel, law)
+        assert loop.reach > np.radians(480)
+        touch = touched(State.of(wheel, law))
+        assert np.radians(430) < touch.positions[0] < np.radians(450) < max(touch.positions)
+        assert touch.peak_force > 1
+    numbers = {name: symbol for symbol, name, _ in loop.facts()["numbers"]}
+    assert (numbers["torque limit"], numbers["inertia"]) == ("F_max", "J")
+    assert "force limit" not in numbers
+    assert play(wheel, zw.Wall(1)).reach == 1.0
 
 
 _RUN = """\

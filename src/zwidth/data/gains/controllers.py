@@ -19,7 +19,7 @@ fzi-forschungszentrum-informatik/cartesian_controllers.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import sqrt
@@ -34,8 +34,10 @@ from zwidth.errors import InputError
 from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.specification.table import quoted
 from zwidth.quantity.text import shown
+from zwidth.showing import Lines, Part, Shown, Table
 
 _AXES = ("x", "y", "z")
+_OF_JOINT = ("N·m/rad", "N·m/(rad·s)", "N·m·s/rad")
 _MANAGER = ("controller_manager", "ros__parameters")
 _MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in _AXES)
 _OF_ADMITTANCE = ("stiffness", "pd_gains", "pid_gains")
@@ -144,8 +146,8 @@ class CartesianGains:
             )
 
 
-@dataclass(frozen=True)
-class Controllers:
+@dataclass(frozen=True, repr=False)
+class Controllers(Shown):
     """What a parameter file says of one arm.
 
     Attributes
@@ -167,6 +169,18 @@ class Controllers:
     rate: Fraction | None
     notes: tuple[str, ...]
     manager: tuple[str, ...] = _MANAGER
+
+    def report(self) -> Iterable[Part]:
+        """The gains, the rate, and what the numbers are."""
+        if self.joints:
+            numbers = ((j.name, (j.stiffness, j.integral, j.damping)) for j in self.joints)
+            heads = (("joint", "stiffness", "integral", "damping"), ("", *_OF_JOINT))
+            yield _gains(heads, numbers)
+        for one in self.cartesian:
+            rows = (("stiffness [N/m, N·m/rad]", one.stiffness), ("damping [N·s/m, N·m·s/rad]", one.damping))
+            yield _gains((("at the end", *_AXES, *(f"about {axis}" for axis in _AXES)),), rows)
+        yield f"rate: {'not said' if self.rate is None else shown(float(self.rate), 'Hz')}"
+        yield Lines(self.notes)
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -198,6 +212,11 @@ class Controllers:
             "rate_Hz": None if self.rate is None else float(self.rate),
             "notes": list(self.notes),
         }
+
+
+def _gains(heads: Sequence[Sequence[str]], rows: Iterable[tuple[str, Sequence[float | Fraction]]]) -> Table:
+    numbers = [(name, *(f"{float(x):g}" for x in row)) for name, row in rows]
+    return Table(rows=numbers, heads=heads, lefts=1)
 
 
 def read_controllers(path: str | Path) -> Controllers:

@@ -10,7 +10,7 @@ blocks.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from math import inf, isclose
@@ -34,8 +34,9 @@ from zwidth.data.logs.survey import (
 from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, check_lengths, listed
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import in_words, quantity_unit, shown
 from zwidth.quantity.units import parse_number
+from zwidth.showing import Lines, Part, Shown, one_line
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,8 +48,8 @@ SAME = 1e-3
 """Relative difference below which two sample periods, or two resolutions, are one that was measured twice."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Log:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Log(Shown):
     """A recording of a device, read in blocks.
 
     Parameters
@@ -83,7 +84,20 @@ class Log:
     channels: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
     stops: tuple[float, float] = (-inf, inf)
-    _blocks: Callable[[], Iterator[Block]] = field(repr=False, compare=False)
+    _blocks: Callable[[], Iterator[Block]] = field(compare=False)
+
+    def report(self) -> Iterable[Part]:
+        """How long, how often, the encoder's step, which forces; and what was odd."""
+        runs = f" in {self.runs} runs" if self.runs > 1 else ""
+        step = (
+            shown(self.resolution, GLOSSARY["position"].unit_for(self.motion)) if self.resolution else "none"
+        )
+        forces = " and ".join(in_words(name, self.motion) for name in self.channels) or "none"
+        yield (
+            f"{one_line(self.source)}: {shown(self.duration, 's')}{runs}, {self.samples} samples, one every "
+            f"{shown(self.sample_period, 's')}; encoder step {step}; forces: {forces}"
+        )
+        yield Lines(self.findings)
 
     @classmethod
     def from_arrays(

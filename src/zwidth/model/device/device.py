@@ -265,7 +265,8 @@ class Device(Parametric):
 
     def _repr_html_(self) -> Html:
         known = self.parameters().items()
-        rows = [(GLOSSARY[k].symbol, in_words(k), shown(v, self.unit(k), _DIGITS)) for k, v in known]
+        names = {k: in_words(k, self.motion) for k, _ in known}
+        rows = [(GLOSSARY[k].symbol, names[k], shown(v, self.unit(k), _DIGITS)) for k, v in known]
         if self.transmission is not None:
             for k, v in self.transmission.parameters().items():
                 own = parameters_of(Transmission)[k]

@@ -105,7 +105,7 @@ def coupling_controls(verdict: PairVerdict) -> tuple[Control, ...]:
     for key in COUPLING_KEYS:
         own = KEYS[key]._replace(required=key == "stiffness")
         value = getattr(pair, _ARGUMENTS.get(key, key))
-        found.append(number_control(f"coupling.{key}", own, value, pair.motion, in_words(key)))
+        found.append(number_control(f"coupling.{key}", own, value, pair.motion, in_words(key, pair.motion)))
     return tuple(found)
 
 

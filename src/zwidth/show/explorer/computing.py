@@ -6,6 +6,8 @@ What comes back is lists of numbers to draw, in SI.
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,6 +29,7 @@ from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.spoken import answers_in
+from zwidth.quantity.text import shown
 from zwidth.show.explorer.state import State
 
 if TYPE_CHECKING:
@@ -110,21 +113,37 @@ def _touch(device: Any, environment: Environment, hand: ParametricOperator) -> T
 
     period = float(device.motor_side.exact("sample_period"))
     duration = min(DURATION, LONGEST_TOUCH, MOST_SAMPLES * period)
-    trace = simulated(device, environment, hand, duration)
+    begins = _beginning(environment)
+    met: Any = environment.met
+    moved = met.replace(positions=[x.fraction - begins for x in met.positions]) if begins else met
+    trace = simulated(device, environment.around(moved), hand, duration)
     times = trace["time"].values
+    said, place = hand.describe(device.motion), shown(float(begins), device.unit("position"))
 
     def curve(name: str) -> list[float]:
         values = np.nan_to_num(trace[name].values, posinf=0.0, neginf=0.0)
-        return list(np.interp(shown, times, values))
+        return list(np.interp(instants, times, values))
 
-    shown = np.unique(
+    instants = np.unique(
         np.concatenate([thinned(times, trace[name].values)[0] for name in ("position", "hand_work")])
     )
     force = float(np.nanmax(np.abs(trace["actuator_force"].values)))
     return Touch(
-        shown.tolist(), curve("position"), curve("hand_force"), curve("actuator_force"), curve("hand_work"),
-        hand.describe(device.motion), float(ledger(trace).extracted), force, environment.unilateral,
+        instants.tolist(), [float(begins) + x for x in curve("position")],
+        curve("hand_force"), curve("actuator_force"), curve("hand_work"),
+        f"{said}; from {place} on, where the law begins" if begins else said,
+        float(ledger(trace).extracted), force, environment.unilateral,
     )  # fmt: skip
+
+
+def _beginning(environment: Environment) -> Fraction:
+    """Where a spring that does nothing around 0, such as the lock of a wheel, begins; 0 of any other law."""
+    points = environment.met.points
+    begins = max(points[0][0].fraction, Fraction(0)) if points and points[0][1] == 0 else Fraction(0)
+    for (low, before), (high, force) in pairwise(points):
+        if before == force == 0 and low.fraction <= begins < high.fraction:
+            begins = high.fraction
+    return begins
 
 
 def region_of(state: State) -> Region:

@@ -97,7 +97,8 @@ def device_controls(state: State, device: Device) -> tuple[Control, ...]:
         shape = own._replace(quantity=quantity, required=name in ("damping", "rate"))
         given = None if key in device.assumed else value
         bound = "> 0" if name == "rate" else own.bound
-        found.append(_number(f"device.{path}", in_words(path), shape, given, device.motion, bound, more))
+        label = in_words(path, device.motion)
+        found.append(_number(f"device.{path}", label, shape, given, device.motion, bound, more))
     between = device.transmission
     for key, own in parameters_of(Transmission).items() if between is not None else ():
         if own.is_number:
@@ -124,15 +125,15 @@ def _of_table(
     for key, own in kinds[str(values["type"])].keys.items():
         here, value = f"{path}.{key}", getattr(thing, key)
         if own.form == "velocity filter":
-            yield from _of_filter(here, _label(key, own), own, values[key], value)
+            yield from _of_filter(here, _label(key, own, motion), own, values[key], value)
         elif own.form == "environment":
             inner = values[key]
             assert isinstance(inner, Mapping)
             yield from _of_table(here, inner, kinds, value, motion)
         elif own.is_number and not isinstance(value, str):
-            yield _number(here, _label(key, own), own, value, motion, own.bound)
+            yield _number(here, _label(key, own, motion), own, value, motion, own.bound)
         else:
-            yield _else(here, key, own, values.get(key))
+            yield _else(here, key, own, values.get(key), motion)
 
 
 def _of_filter(path: str, label: str, own: Parameter, table: object, value: Any) -> Iterator[Control]:
@@ -153,14 +154,14 @@ def _of_filter(path: str, label: str, own: Parameter, table: object, value: Any)
         yield number_control(here, number, getattr(value, key), "linear", words)
 
 
-def _label(key: str, own: Parameter) -> str:
+def _label(key: str, own: Parameter, motion: str) -> str:
     """A key as words; of an environment `damping` is virtual, as on the command line."""
-    return in_words(own.quantity.name if key == "damping" and own.quantity.name in GLOSSARY else key)
+    return in_words(own.quantity.name if key == "damping" and own.quantity.name in GLOSSARY else key, motion)
 
 
 def number_control(path: str, own: Parameter, value: Any, motion: str, label: str = "") -> Control:
     """A number that stands alone, such as one of a hand; `value` None where it is not given."""
-    return _number(path, label or _label(path.rpartition(".")[2], own), own, value, motion, own.bound)
+    return _number(path, label or _label(path.rpartition(".")[2], own, motion), own, value, motion, own.bound)
 
 
 def _number(
@@ -171,12 +172,12 @@ def _number(
     number = float(value) if known else None
     whole = isinstance(value, int)
     scale = scale_of(number, unit, bound != "> 0" and not whole, whole)
-    symbol = own.quantity.symbol
+    symbol, meaning = own.quantity.symbol, in_words(own.meaning, motion)
     return Control(
         path, "number",
         label=label,
         unit="" if unit == "1" else unit,
-        meaning=f"{symbol}: {own.meaning}" if symbol else own.meaning,
+        meaning=f"{symbol}: {meaning}" if symbol else meaning,
         text=typed(value, unit),
         scale=scale,
         place=scale.share(usual(unit) if number is None else number),
@@ -196,9 +197,9 @@ def typed(value: Any, unit: str) -> str:
     return shown(float(value), unit, 6) if unit in _SMALL else shown(value, unit, 6)
 
 
-def _else(path: str, key: str, own: Parameter, value: object) -> Control:
+def _else(path: str, key: str, own: Parameter, value: object, motion: str) -> Control:
     """A word, a flag, or a text as TOML has it."""
-    label, meaning = in_words(key), own.meaning
+    label, meaning = in_words(key, motion), in_words(own.meaning, motion)
     if own.form == "flag":
         return Control(path, "flag", label, meaning=meaning, text="true" if value is True else "false")
     if own.form == "word" or own.words:

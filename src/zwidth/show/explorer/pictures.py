@@ -24,7 +24,7 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import in_words, shown
 from zwidth.show.explorer.computing import Region, Touch
 from zwidth.show.plots.linear import damping_range, refined_curve
 from zwidth.show.plots.planes import (
@@ -330,6 +330,7 @@ class TouchPictures:
         self._source = ColumnDataSource({name: [] for name in columns})
         time = DataRange1d(range_padding=0)
         self.position: Any = new_figure("time [s]", "position", x_range=time, height=230)
+        self.position.y_range.only_visible = True  # of a lock far from 0 there is no shade from 0 on
         self.position.line(
             "time", "position", source=self._source, color=BLUE, line_width=2, legend_label="handle"
         )
@@ -378,12 +379,12 @@ class TouchPictures:
         for made in self._all:
             made.visible = True
         self._inside.visible = self.position.legend[0].items[1].visible = touch.one_sided
-        self.position.yaxis[0].axis_label = f"position [{x_unit}]"
-        self.force.yaxis[0].axis_label = f"force [{f_unit}]"
+        self.position.yaxis[0].axis_label = f"{in_words('position', motion)} [{x_unit}]"
+        self.force.yaxis[0].axis_label = f"{in_words('force', motion)} [{f_unit}]"
         self.energy.yaxis[0].axis_label = f"work of the hand [{w_unit}]"
         peak, peak_unit = scale([touch.peak_force], force)
         most = f"{number(touch.peak_force * peak)} {peak_unit}"
-        said = f"{touch.operator}. Largest force {most}."
+        said = f"{touch.operator}. Largest {in_words('force', motion)} {most}."
         out, unit = scale([touch.extracted], "J")
         if touch.extracted > 0:
             energy = f"The hand got out {number(touch.extracted * out)} {unit} more than it had put in."

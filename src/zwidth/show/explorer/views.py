@@ -176,7 +176,7 @@ class MotionPictures:
         }  # fmt: skip
         self._source.data = {"time": times, "position": positions, "energy": energies}
         self._steps.data = {"time": times, "force": [*forces, forces[-1]]}
-        self.position.yaxis[0].axis_label = f"position [{x_unit}]"
+        self.position.yaxis[0].axis_label = f"{in_words('position', motion)} [{x_unit}]"
         self.force.yaxis[0].axis_label = f"actuator [{f_unit}]"
         self.energy.yaxis[0].axis_label = f"energy out [{w_unit}]"
         for made in self._all:
@@ -243,6 +243,10 @@ export function render({ model }) {
     frame.srcdoc = model.html;
     root.replaceChildren(...(model.html ? [frame] : []));
   };
+  window.addEventListener("message", ({ source, data }) => {
+    const frame = root.firstChild;
+    if (frame?.contentWindow === source) frame.style.height = `${Number(data)}px`;
+  });
   model.on("html", draw);
   draw();
   return root;
@@ -250,8 +254,7 @@ export function render({ model }) {
 """
     _stylesheets = [  # noqa: RUF012  # as Panel has it
         ":host { display: block; width: 100%; }"
-        "iframe { display: block; border: 0; width: 100%; height: 81rem; border-radius: 6px; }"
-        "@media (max-width: 52rem) { iframe { height: 100rem; } }"
+        "iframe { display: block; border: 0; width: 100%; height: 60rem; border-radius: 6px; }"
     ]
 
 
@@ -348,7 +351,7 @@ def _drawn_of(state: State) -> tuple[object, ...]:
 
 def _controls_of(hand: ParametricOperator, motion: str) -> list[Control]:
     return [
-        number_control(f"operator.{name}", own, getattr(hand, name), motion, in_words(name))
+        number_control(f"operator.{name}", own, getattr(hand, name), motion, in_words(name, motion))
         for name, own in parameters_of(type(hand)).items()
         if own.is_number
     ]

@@ -59,7 +59,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     """The same on given axes."""
     frequencies, needs = refined_curve(verdict)
     motion = verdict.device.motion
-    factor, unit = drawn_in("damping", motion)
+    factor, unit = drawn_in("damping", motion, [*needs, float(verdict.decision.loop.damping)])
     needs, b = [factor * need for need in needs], factor * float(verdict.decision.loop.damping)
     low, high = damping_range(needs, b, room=0.12)
     wanting = [n > b for n in needs]
@@ -76,9 +76,9 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
         axes.set_xscale("log")
     axes.set_xlim(slowest, nyquist)
     axes.set_ylim(low, high)
-    _mark(axes, verdict, needs, (low, high))
+    _mark(axes, verdict, needs, factor * verdict.budget.required, unit)
     axes.set_xlabel(label("frequency"))
-    axes.set_ylabel(label("damping", motion, "required damping"))
+    axes.set_ylabel(label("damping", motion, "required damping", unit))
     legend(axes)
     heading(axes, f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
 
@@ -111,16 +111,15 @@ def damping_range(needs: list[float], b: float, room: float = 0.45) -> tuple[flo
     return (bottom - 0.05 * span if bottom < 0 else 0.0), top + room * span
 
 
-def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], limits: tuple[float, float]) -> None:
-    factor, unit = drawn_in("damping", verdict.device.motion)
-    peak, need = verdict.critical_frequency, factor * verdict.budget.required
-    if limits[0] < 0:
+def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], need: float, unit: str) -> None:
+    peak, (low, high) = verdict.critical_frequency, axes.get_ylim()
+    if low < 0:
         axes.axhline(0, color=GREY, lw=0.6)
     if verdict.required_damping is None and need < inf:
         axes.plot([], [], ls="none", label="no damping is enough")
         return
     if need == inf:
-        text, height = f"no damping is enough at {number(peak)} Hz", limits[1] * 0.9
+        text, height = f"no damping is enough at {number(peak)} Hz", high * 0.9
     elif max(needs) - min(needs) <= _FLAT * abs(need):
         text, height = f"{number(need)} {unit} at every frequency", need
     else:
@@ -163,7 +162,7 @@ def has_friction(verdict: LinearVerdict) -> bool:
 def draw_damping(axes: Axes, verdict: LinearVerdict) -> None:
     """Shares of the required damping, stacked, above the device's damping."""
     account, motion = verdict.budget, verdict.device.motion
-    factor, _ = drawn_in("damping", motion)
+    factor, unit = drawn_in("damping", motion, (account.damping, account.required, account.hold))
     if isfinite(account.required) and verdict.required_damping is not None:
         _stack(axes, [(factor * getattr(account, key), text, colour) for key, text, colour in _SHARES])
         asked = factor * account.required
@@ -175,21 +174,22 @@ def draw_damping(axes: Axes, verdict: LinearVerdict) -> None:
     has = factor * account.damping
     axes.barh(0, has, height=0.6, color=BLACK, gid="b")
     _finish(axes, ("leaks", f"b = {number(has)}"))
-    axes.set_xlabel(label("damping", motion))
+    axes.set_xlabel(label("damping", motion, unit=unit))
 
 
 def draw_friction(axes: Axes, verdict: LinearVerdict) -> None:
     """What one encoder count asks for, above the device's Coulomb friction."""
     account, motion = verdict.budget, verdict.device.motion
-    need = account.friction_required
+    need, has = account.friction_required, account.coulomb_friction
+    factor, unit = drawn_in("coulomb_friction", motion, (has, need or 0.0))
     if need is not None:
         name = "encoder count, K Δ/2" if verdict.decision.is_spring else "largest error of a count"
-        _stack(axes, [(need, name, SKY)])
+        _stack(axes, [(factor * need, name, SKY)])
     else:
         _words(axes, "none is known to be enough for this law")
-    axes.barh(0, account.coulomb_friction, height=0.6, color=BLACK, gid="f_c")
-    _finish(axes, ("leaks", f"{symbol('coulomb_friction')} = {number(account.coulomb_friction)}"))
-    axes.set_xlabel(label("coulomb_friction", motion, "Coulomb friction"))
+    axes.barh(0, factor * has, height=0.6, color=BLACK, gid="f_c")
+    _finish(axes, ("leaks", f"{symbol('coulomb_friction')} = {number(factor * has)}"))
+    axes.set_xlabel(label("coulomb_friction", motion, unit=unit))
 
 
 def _stack(axes: Axes, shares: list[tuple[float, str, str]]) -> None:

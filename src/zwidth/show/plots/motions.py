@@ -200,7 +200,9 @@ def _round_positions(
     axes.plot(times, [factor * v for v in x], color=BLUE, label="position")
     if len(x) <= _DOTS:  # a dot where the encoder is read
         read = [(t, factor * v) for t, v in zip(times, x, strict=True) if t == round(t)]
-        axes.plot(*zip(*read, strict=True), "o", color=BLUE, ms=3.5, clip_on=False, gid="samples")
+        axes.plot(
+            *zip(*read, strict=True), "o", color=BLUE, ms=3.5, clip_on=False, gid="samples", label="samples"
+        )
     edges = range(floor(min(x) / resolution + 1e-9), ceil(max(x) / resolution - 1e-9) + 1)
     if len(edges) <= _ROUND_EDGES:
         _edges(axes, [factor * n * resolution for n in edges])

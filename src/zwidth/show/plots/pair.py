@@ -77,8 +77,9 @@ def plot_pair(verdict: PairVerdict) -> Figure:
 
 def draw_pair_damping(axes: Axes, verdict: PairVerdict) -> None:
     """Damping of the follower that is enough beside that of the leader, at this stiffness and link."""
-    factor, unit = drawn_in("damping", verdict.pair.motion)
-    leader, follower = (factor * side for side in damping_boundary(verdict.pair))
+    sides = damping_boundary(verdict.pair)
+    factor, unit = drawn_in("damping", verdict.pair.motion, sides[0])
+    leader, follower = (factor * side for side in sides)
     here = [factor * float(side.damping) for side in verdict.pair.sides]
     shown = np.isfinite(follower)
     top, low = float(leader.max()), 0.0
@@ -129,7 +130,7 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     delays, stiffness = link_limits(pair)
     which = "each way" if pair.there == pair.back else "mean of there and back"
     seconds, text = axis([float(delays[-1])], "link_delay", text=f"link delay, {which}")
-    factor = drawn_in("stiffness", pair.motion)[0]
+    factor, unit = drawn_in("stiffness", pair.motion, [*stiffness, float(pair.felt_stiffness)])
     ends, stiffness, felt = seconds * delays, factor * stiffness, factor * float(pair.felt_stiffness)
     top, low = 1.3 * max(felt, float(stiffness.max())), 0.0
     if 0 < stiffness[stiffness > 0].min(initial=top) < top / _FAR:
@@ -140,7 +141,7 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False, label="passive up to here at no delay")
     axes.set(xlim=(0, ends[-1]), ylim=(low, top))
     axes.set_xlabel(text)
-    axes.set_ylabel(label("stiffness", pair.motion))
+    axes.set_ylabel(label("stiffness", pair.motion, unit=unit))
     _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, felt)
     heading(axes, "how stiff over what link" if stiffness.any() else "no stiffness is passive")
 
@@ -254,17 +255,18 @@ def plot_held_pair(verdict: HeldVerdict) -> Figure:
 def draw_held_damping(axes: Axes, verdict: HeldVerdict, criterion: HeldCriterion) -> None:
     """At each frequency, of the hand that asks for most; and what the free arm has."""
     motion, free = verdict.pair.motion, verdict.question.free
-    factor, unit = drawn_in("damping", motion)
     nyquist = 0.5 / float(verdict.pair.sample_period)
     angles = np.geomspace(pi / 1000, pi, _POINTS)
-    needs = factor * np.max(
+    needs = np.max(
         [
             [law.required_damping_at(Fraction(float(np.cos(angle)))) for angle in angles]
             for _, law, _ in criterion.corners
         ],
         axis=0,
     )
-    b = factor * float(verdict.question.arms[0].side.damping)
+    b = float(verdict.question.arms[0].side.damping)
+    factor, unit = drawn_in("damping", motion, [*needs, b])
+    needs, b = factor * needs, factor * b
     frequencies = angles / pi * nyquist
     lacks = (needs > b).tolist()
     if any(lacks):
@@ -276,7 +278,7 @@ def draw_held_damping(axes: Axes, verdict: HeldVerdict, criterion: HeldCriterion
     axes.set_xscale("log")
     axes.set_xlim(nyquist / 1000, nyquist)
     axes.set_xlabel(label("frequency"))
-    axes.set_ylabel(label("damping", motion, "required damping"))
+    axes.set_ylabel(label("damping", motion, "required damping", unit))
     legend(axes)
 
 
@@ -287,12 +289,12 @@ def draw_held_stiffness(axes: Axes, verdict: HeldVerdict) -> None:
         "damps as much": verdict.largest_stiffness_of_any_such_hand,
         "any": verdict.largest_stiffness_of_two_hands,
     }
-    factor = drawn_in("stiffness", verdict.pair.motion)[0]
+    felt = float(verdict.pair.felt_stiffness)
+    factor, unit = drawn_in("stiffness", verdict.pair.motion, [felt, *(v or 0.0 for v in limits.values())])
     heights = [factor * (value or 0.0) for value in limits.values()]
     axes.barh(list(limits), heights, color=[GREEN, BLUE, GREY], height=0.6)
-    felt = factor * float(verdict.pair.felt_stiffness)
-    axes.axvline(felt, color="black", ls="--", lw=1.4, label="this pair")
+    axes.axvline(factor * felt, color="black", ls="--", lw=1.4, label="this pair")
     axes.invert_yaxis()
-    axes.set_xlabel(label("stiffness", verdict.pair.motion, "largest stiffness"))
+    axes.set_xlabel(label("stiffness", verdict.pair.motion, "largest stiffness", unit))
     legend(axes)
     heading(axes, f"hand on the {verdict.question.held}")

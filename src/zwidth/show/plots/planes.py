@@ -138,7 +138,7 @@ def _regions(axes: Axes, x: tuple[float, float], y: tuple[float, float], above: 
         axes.annotate(
             name, (u, v), (du, dv), textcoords="offset points", ha=ha, va=va, fontsize=SMALL, color=colour
         )
-    axes.set_xlabel("β = b/(K T)   viscous friction against sampling")
+    axes.set_xlabel("β = b/(K T)   damping against sampling")
     axes.set_ylabel(low_index("σ = f_c/(K Δ)   dry friction against the encoder"))
 
 
@@ -153,20 +153,18 @@ def _line(
         [beta / softest, beta / stiffest], [sigma / softest, sigma / stiffest],
         color=BLUE, lw=1.8, gid="stiffnesses",
     )  # fmt: skip
-    factor, unit = drawn_in("stiffness", device.motion)
+    factor, unit = drawn_in("stiffness", device.motion, [stiffest])
     ends = (ceil(log10(softest * factor * 1.1)), floor(log10(stiffest * factor / 1.1)) + 1)
     decades = [10.0**n / factor for n in range(*ends)]
     for k in decades:
         axes.plot([beta / k], [sigma / k], "o", color=BLUE, mfc="white", ms=4, zorder=4)
         text = number(k * factor) + (f" {unit}" if k == decades[0] else "")
+        if log10(beta / k / x[0]) > 0.15 * log10(x[1] / x[0]):
+            at, side = (-5, 3), "right"
+        else:  # before the upright axis there are its own numbers
+            at, side = (5, -9), "left"
         axes.annotate(
-            text,
-            (beta / k, sigma / k),
-            (-5, 3),
-            textcoords="offset points",
-            ha="right",
-            fontsize=SMALL,
-            color=BLUE,
+            text, (beta / k, sigma / k), at, textcoords="offset points", ha=side, fontsize=SMALL, color=BLUE
         )
 
 

@@ -26,7 +26,7 @@ from zwidth.model.device import Device
 from zwidth.passivity.scope import TOLD
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import PREFIXES, in_words, unit_text
+from zwidth.quantity.text import PREFIXES, in_words, prefixed, unit_text
 from zwidth.showing import OBEYED, printable
 from zwidth.writing import check_target, writing_whole
 
@@ -90,7 +90,7 @@ def new_figure(width: float = WIDEST, height: float = 4.0) -> Figure:
 def label(name: str, motion: str = "linear", text: str | None = None, unit: str | None = None) -> str:
     """An axis label from the glossary: name, symbol, unit."""
     quantity = GLOSSARY[name]
-    words = in_words(quantity.name) if text is None else text
+    words = in_words(quantity.name, motion) if text is None else text
     return with_unit(
         f"{words} {symbol(name)}".strip(), spoken(quantity.unit_for(motion))[1] if unit is None else unit
     )
@@ -109,7 +109,7 @@ def axis(
     `text` stands in the place of name and symbol; "time" is no quantity of the glossary, and has one too.
     """
     factor, unit = scale(values, "s" if name == "time" else GLOSSARY[name].unit_for(motion))
-    words = "time t" if name == "time" else f"{in_words(name)} {symbol(name)}"
+    words = "time t" if name == "time" else f"{in_words(name, motion)} {symbol(name)}"
     return factor, with_unit(words if text is None else text, unit)
 
 
@@ -136,19 +136,24 @@ _SUPERSCRIPT = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=
 
 
 def scale(values: Iterable[float], unit: str) -> tuple[float, str]:
-    """(factor, unit) with which these values are read without exponents, such as (1000, "mm")."""
+    """(factor, unit) with which these values are read without exponents, such as (1000, "mm").
+
+    Of what people seldom prefix, such as N/m, only where `shown` prefixes the largest of them.
+    """
     factor, unit = spoken(unit)
     largest = factor * max((abs(v) for v in values if isfinite(v)), default=0.0)
     if unit not in _SCALED or largest == 0:
-        return factor, unit_text(unit)
+        power, unit = prefixed(largest, unit, 4)
+        return factor * 10.0**-power, unit
     power = max(-12, min(6, 3 * floor(log10(largest * 1.0000001) / 3)))
     return factor * 10.0**-power, PREFIXES[power] + unit_text(unit)
 
 
-def drawn_in(name: str, motion: str) -> tuple[float, str]:
-    """(factor, unit) of an axis with the `label` of a quantity: SI, an angle in the unit that was typed."""
+def drawn_in(name: str, motion: str, values: Iterable[float] = ()) -> tuple[float, str]:
+    """(factor, unit) of an axis with the `label` of a quantity, prefixed as `shown` does the largest."""
     factor, unit = spoken(GLOSSARY[name].unit_for(motion))
-    return factor, unit_text(unit)
+    power, unit = prefixed(factor * max((abs(v) for v in values if isfinite(v)), default=0.0), unit, 4)
+    return factor * 10.0**-power, unit
 
 
 def quantity_text(value: float, name: str, motion: str = "linear") -> str:

@@ -78,7 +78,7 @@ def of_device(table: Table, device: Device) -> Iterator[Row]:
     ranges = {} if name is None else catalogue.entry(str(name)).ranges
     for key, value in device.parameters().items():
         written = next((k for k in _WRITTEN_AS.get(key, (key,)) if k in table.values), None)
-        asked = "inertia" if _is_inertia(key, device.motion) else key
+        asked = key if key != "mass" else in_words(key, device.motion)
         where = _place(table, written, asked) if written else _of_the_catalogue(key, value, known, ranges)
         yield (*_named(key, value, device.motion), where or _unless_assumed(key, device.assumed, "not given"))
     inside: Any = table.values.get("transmission", {})
@@ -137,23 +137,20 @@ def _of_a_key(name: str, key: Parameter, value: Any, motion: str) -> tuple[str, 
     if hasattr(value, "describe"):
         return in_words(name), value.describe()
     if isinstance(value, (tuple, list)) and len(str(value)) > 60:
-        return in_words(name), f"{len(value)} of them"
+        return in_words(name, motion), f"{len(value)} of them"
+    if isinstance(value, tuple) and all(isinstance(one, Exact) for one in value):
+        return in_words(name, motion), ", ".join(_value(one, key.unit_for(motion)) for one in value)
     return in_words(name), str(value)
 
 
 def _named(key: str, value: Exact | Interval, motion: str) -> tuple[str, str]:
-    own = GLOSSARY[key]
-    name = "inertia" if _is_inertia(key, motion) else f"{in_words(key)} {own.symbol}".rstrip()
-    return name, _value(value, own.unit_for(motion))
+    own, name = GLOSSARY[key], in_words(key, motion)
+    named = name if name == "inertia" else f"{name} {own.symbol}".rstrip()
+    return named, _value(value, own.unit_for(motion))
 
 
 def _value(value: Exact | Interval, unit: str) -> str:
     return shown(value, unit, _DIGITS) if isinstance(value, Interval) else shown(float(value), unit, _DIGITS)
-
-
-def _is_inertia(key: str, motion: str) -> bool:
-    """The mass of what turns is called so nowhere."""
-    return key == "mass" and motion == "rotary"
 
 
 def as_written(value: object, unit: str) -> str:

@@ -10,6 +10,7 @@ not depend on how late a sample was; what the actuator's energy is counted from 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -34,6 +35,7 @@ from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.native.compiled import Array
 from zwidth.quantity.text import quantity_unit
+from zwidth.showing import Part, Shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,8 +77,8 @@ class Touch(NamedTuple):
     rows: slice
 
 
-@dataclass(frozen=True, kw_only=True)
-class Replay:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Replay(Shown):
     """Forces of a simulation beside those that were given.
 
     Parameters
@@ -108,6 +110,10 @@ class Replay:
     def unit_key(self) -> str:
         """The unit of `largest` as it stands in keys."""
         return "N_m" if self.motion == "rotary" else "N"
+
+    def report(self) -> Iterable[Part]:
+        """In a line."""
+        yield self.describe()
 
     def describe(self) -> str:
         """In a line."""

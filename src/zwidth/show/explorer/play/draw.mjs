@@ -70,9 +70,9 @@ function slides(pen, look, width, height, colours) {
     look.arms.forEach((arm, i) => {
         const y = lane * (i + 1);
         line(pen, [[0, y], [width, y]], colours.faint, 1);
+        text(pen, `${arm.name} ${arm.told.join(", ")}`.trim(), 8, y - 8, colours.soft);
         handle(pen, place(arm.position), y, width, colours);
         push(pen, place(arm.position), y, arm.force / look.full, colours);
-        if (arm.name) text(pen, arm.name, 8, y - 8, colours.soft);
         if (i === 0) hand(pen, place(look.anchor), place(arm.position), y, look.held, colours);
     });
     ruler(pen, look, width, height, colours);
@@ -132,13 +132,13 @@ export function dial(i, many, width, height) {
     return { x, y, r: Math.max(24, Math.min(height / 2 - ROOM, width / (2 * many) - ROOM)) };
 }
 
-/* Angle 0 is up, and positive to the right; beyond half a turn to either side the law is not drawn. */
+/* Angle 0 is up, and positive to the right; of the law half a turn to either side of where the handle is. */
 function turns(pen, look, width, height, colours) {
     look.arms.forEach((arm, i) => {
         const { x, y, r } = dial(i, look.arms.length, width, height), turn = arm.position;
         const at = (angle, radius) => [x + radius * Math.sin(angle), y - radius * Math.cos(angle)];
         const arc = (from, to, radius, many = 72) => Array.from({ length: many + 1 }, (_, k) => at(from + ((to - from) * k) / many, radius));
-        ring(pen, look, arc, at, r, colours);
+        ring(pen, look, turn, arc, at, r, colours);
         if (look.thing === "wheel") {
             line(pen, arc(0, 2 * Math.PI, r), colours.ink, 9);
             for (const spoke of [1, 2]) line(pen, [[x, y], at(turn + (spoke * 2 * Math.PI) / 3, r)], colours.ink, 6);
@@ -157,31 +157,35 @@ function turns(pen, look, width, height, colours) {
             if (look.held) line(pen, arc(turn, look.anchor, r, 12).map((point, k) => (k % 2 ? out[k] : point)), colours.hand, 2);
             disc(pen, at(look.held ? look.anchor : turn, r), 9, look.held ? colours.hand : "transparent", colours.hand);
         }
-        if (arm.name) middled(pen, arm.name, x, height - 6, 13, colours.soft);
+        if (arm.name) middled(pen, `${arm.name} ${arm.told.join(", ")}`, x, height - 6, 13, colours.soft);
     });
     if (look.arms.length > 1) return;
-    const size = Math.max(13, Math.min(28, width / 30)), y = width > 600 ? height / 2 : 30;
-    look.told.forEach(([name, value], i) => {
-        middled(pen, name, (width * (1 + 4 * i)) / 6, y - size, 13, colours.soft);
-        middled(pen, value, (width * (1 + 4 * i)) / 6, y + 2, size, colours.ink);
+    const beside = width / 2 - dial(0, 1, width, height).r > 200, y = beside ? height / 2 : 30;
+    const size = Math.max(13, Math.min(28, width / 30));
+    look.arms[0].told.forEach((value, i) => {
+        const x = beside ? (width * (1 + 4 * i)) / 6 : [44, width - 44][i];
+        middled(pen, look.names[i], x, y - size, 13, colours.soft);
+        middled(pen, value, x, y + 2, size, colours.ink);
     });
 }
 
 /* The law's torque around the rim, where it begins, and angles. */
-function ring(pen, look, arc, at, r, colours) {
-    const most = strongest(look), step = (2 * look.reach) / look.profile.length, shown = Math.min(look.reach, Math.PI);
-    line(pen, arc(-shown, shown, r + RING), colours.faint, 1);
+function ring(pen, look, turn, arc, at, r, colours) {
+    const most = strongest(look), step = (2 * look.reach) / look.profile.length;
+    const first = Math.max(-look.reach, turn - Math.PI), last = Math.min(look.reach, turn + Math.PI);
+    line(pen, arc(first, last, r + RING), colours.faint, 1);
     look.profile.forEach((force, i) => {
         const from = i * step - look.reach;
-        if (from < -shown || from + step > shown) return;
+        if (from < first || from + step > last) return;
         pen.globalAlpha = Math.min(0.7, (0.7 * Math.abs(force)) / most);
         line(pen, arc(from, from + step, r + RING, 1), colours.wall, RING);
     });
     pen.globalAlpha = 1;
-    if (look.oneSided) line(pen, [at(0, r + 6), at(0, r + 8 + RING)], colours.wall, 3);
-    for (const part of [-1, -0.5, 0, 0.5, 1]) {
-        const angle = part * look.reach, [x, y] = at(angle, r + RING + 18 + 10 * Math.abs(Math.sin(angle)));
-        if (Math.abs(angle) < 2.5) middled(pen, look.mark(angle), x, y + 4, 12, colours.soft);
+    if (look.oneSided && Math.abs(turn) < Math.PI) line(pen, [at(0, r + 6), at(0, r + 8 + RING)], colours.wall, 3);
+    const apart = Math.PI / (look.reach > Math.PI / 2 ? 2 : 6);
+    for (let k = Math.ceil(first / apart); k * apart <= last; k += 1) {
+        const angle = k * apart, [x, y] = at(angle, r + RING + 18 + 10 * Math.abs(Math.sin(angle)));
+        if (Math.abs(angle - turn) < 2.5) middled(pen, look.mark(angle), x, y + 4, 12, colours.soft);
     }
 }
 

@@ -83,7 +83,8 @@ def played(
     start
         Where handle and hand begin [m; rad]; by default outside a wall, or at 0.
     reach
-        The page shows positions from −reach to reach [m; rad]; by default 20 mm, or 1 rad.
+        The page shows positions from −reach to reach [m; rad]; by default 20 mm, or 1 rad, and a tenth more
+        than all the points of a spring.
     do, notice
         What to do, and what to look for.
     decide
@@ -98,7 +99,8 @@ def played(
     text = module(law_program(seen_at_motor(device), law), about=["The law that is played."], numbers=())
     holding = hand or usual_hand(device).hand
     period = device.exact("sample_period")
-    shown = _REACH[device.motion] if reach is None else reach
+    farthest = max((abs(float(place)) for place, _ in law.met.points), default=0.0)
+    shown = max(_REACH[device.motion], 1.1 * farthest) if reach is None else reach
     begin = (_OUTSIDE * shown if law.unilateral else 0.0) if start is None else start
     frame = frame_of(device.motor_side, _still(holding), period, None, None, 1)
     arm = _arm(device.motor_side, period, frame.plant, holding, begin)
@@ -303,8 +305,8 @@ class Played:
 
 def _device_numbers(device: Device, whose: str = "") -> Iterator[tuple[str, str, str]]:
     for key, value in device.parameters().items():
-        own, turns = GLOSSARY[key], device.motion == "rotary" and key == "mass"
-        symbol, name = ("J", "inertia") if turns else (own.symbol, in_words(key))
+        own, name = GLOSSARY[key], in_words(key, device.motion)
+        symbol = "J" if name == "inertia" else own.symbol
         yield symbol, f"{name}{whose}", shown(value, own.unit_for(device.motion))
     if device.transmission is not None:
         for key, value in device.transmission.parameters().items():

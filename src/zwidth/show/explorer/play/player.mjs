@@ -94,6 +94,6 @@ export function profile(facts, law, places) {
 
 /* A loud force [N; N·m]: what the hand can press with, or the actuator give. */
 export function loud(facts) {
-    const { hand, limit } = facts.arms[0], pressed = 0.5 * hand.stiffness * facts.reach;
+    const { hand, limit } = facts.arms[0], pressed = 0.5 * hand.stiffness * Math.min(facts.reach, 1);
     return limit > 0 ? Math.min(limit, pressed) : pressed;
 }

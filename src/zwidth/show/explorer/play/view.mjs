@@ -2,7 +2,7 @@
 
 import { Player, loud, profile } from "./player.mjs";
 import { Sound, Waveform } from "./sound.mjs";
-import { dial, energy, stage, trace } from "./draw.mjs";
+import { SECONDS, dial, energy, stage, trace } from "./draw.mjs";
 
 const PLACES = 160;
 const SAID_EVERY_MS = 6000;
@@ -13,6 +13,7 @@ export function start(root, plant, laws) {
     const all = JSON.parse(document.getElementById("facts").textContent);
     const page = new View(root, all, plant, laws);
     page.choose(0);
+    new ResizeObserver(() => parent.postMessage(root.offsetHeight, "*")).observe(root); // what frames it makes room
     requestAnimationFrame((now) => page.frame(now));
     return page;
 }
@@ -53,11 +54,12 @@ class View {
         this.facts = facts;
         this.player = new Player(facts, this.plant, this.laws[i]);
         this.full = loud(facts);
-        this.profile = profile(facts, this.laws[i], PLACES);
+        this.profile = profile(facts, this.laws[i], PLACES * Math.ceil(facts.reach / Math.PI));
         this.again();
         [...this.at("loops").children].forEach((b, k) => b.setAttribute("aria-pressed", String(k === i)));
         for (const key of ["name", "outcome", "claim", "do", "notice"]) this.at(key).textContent = facts[key];
         for (const who of this.root.querySelectorAll(".who")) who.textContent = facts.arms.length > 1 ? "Hand and spring" : "The hand";
+        this.at("stage").classList.toggle("turns", facts.thing !== "handle");
         this.at("outcome").style.background = facts.colour;
         this.at("numbers").replaceChildren(...facts.numbers.map(numbers));
         this.at("assumptions").replaceChildren(...facts.assumptions.map((line) => made("li", line)));
@@ -89,14 +91,14 @@ class View {
         const names = engine.arms.length > 1 ? ["leader", "follower"] : [""];
         stage(this.at("stage"), {
             reach: facts.reach, thing: facts.thing, oneSided: facts.one_sided, full: this.full,
-            told: [[this.names.position, this.length(engine.arms[0].position, 1)], [this.names.force, this.size(engine.arms[0].force)]],
+            names: [this.names.position, this.names.force],
             profile: this.profile, anchor: engine.pointer, held: engine.held, mark: (x) => this.length(x, 0),
-            arms: engine.arms.map(({ position, force }, i) => ({ position, force, name: names[i] })),
+            arms: engine.arms.map(({ position, force }, i) => ({ position, force, name: names[i], told: [this.length(position, 1), this.size(force)] })),
         }, colours);
         if (this.calm.matches && now - this.drawn < 500 && this.charted) return;
         this.drawn = now;
         this.charted = true;
-        trace(this.at("force"), history, "force", (most) => `${this.names.force}, up to ${this.size(most)}`, colours.force, colours);
+        trace(this.at("force"), history, "force", (most) => `${this.names.force} of the last ${SECONDS} s, up to ${this.size(most)}`, colours.force, colours);
         trace(this.at("position"), history, "position", (most) => `${this.names.position}, up to ${this.length(most, 1)}`, colours.hand, colours);
         energy(this.at("energy"), history, (high) => `energy put in by hand, taken by friction; up to ${joules(high)}`, colours);
     }
@@ -206,7 +208,8 @@ class View {
     }
 
     size(force) {
-        return `${fixed(force, 2)} ${this.facts.force_unit}`;
+        const milli = this.full < 0.5;
+        return `${fixed(milli ? 1000 * force : force, milli ? 1 : 2)} ${milli ? "m" : ""}${this.facts.force_unit}`;
     }
 }
 
