@@ -87,7 +87,7 @@ class Answer(Shown, Generic[Changed, Seen, Recorded]):
         """The claim, what speaks for it, what to do."""
         yield self.claim
         if self.cause is not None:
-            yield f"{self.cause}, {100 * self.confidence:.0f} % sure"
+            yield f"{self.cause}, {shown(self.confidence, '%', 2)} sure"
         yield from self.evidence
         yield from self.next_steps
         yield Table(rows=[*self.rows()])
@@ -233,7 +233,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
             if law.damping:
                 damping = shown(law.damping, self.seen.unit("virtual_damping"), 3)
                 yield "virtual damping", f"{damping}, window {law.window}"
-            yield "force explained", f"{100 * (1 - law.unexplained):.4g} %"
+            yield "force explained", shown(1 - law.unexplained, "%")
         yield from rows_of_likely(self.likely)
 
     def _measured(self, seen: Evidence) -> dict[str, Any]:

@@ -34,7 +34,7 @@ from zwidth.data.logs.survey import (
 from zwidth.data.logs.table import Block, Finding, Motion, Table, Values, check_lengths, listed
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import quantity_unit, shown
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -204,8 +204,8 @@ class Log:
 def _same(first: Log, log: Log) -> None:
     if not isclose(log.sample_period, first.sample_period, rel_tol=SAME):
         raise InputError(
-            f"{first.source} has a sample period of {first.sample_period:g} s and {log.source} of "
-            f"{log.sample_period:g} s: the limit 2b/T is another for each; identify them one by one"
+            f"{first.source} has a sample period of {shown(first.sample_period, 's', 6)} and {log.source} of "
+            f"{shown(log.sample_period, 's', 6)}, so 2b/T differs: identify them one by one"
         )
     for what in ("motion", "resolution", "channels"):
         one, other = getattr(first, what), getattr(log, what)

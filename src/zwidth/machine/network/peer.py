@@ -69,8 +69,8 @@ class PeerReport(Documented):
 
     def report(self) -> Iterable[Part]:
         """The steps, then line by line."""
-        p50, p99, most = (f"{1e3 * t:.2g}" for t in self.lateness)
-        late = f"late by {p50} ms median, {p99} ms in 99 %, {most} ms at most"
+        p50, p99, most = (shown(t, "s", 2) for t in self.lateness)
+        late = f"late by {p50} median, {p99} in 99 %, {most} at most"
         yield f"{self.steps} steps, {self.late} by more than a period too late; {late}"
         rows = [link.row(name) for name, link in self.links.items()]
         yield Table(heads=[LinkReport._HEADS], rows=rows, lefts=1)
@@ -238,7 +238,7 @@ class LinkReport(Documented):
 
     @property
     def _share(self) -> str:
-        return f"{100 * self.lost / max(self.lost + self.received, 1):.2g} %"
+        return shown(self.lost / max(self.lost + self.received, 1), "%", 2)
 
     @property
     def _trips(self) -> str:

@@ -208,8 +208,8 @@ def current_rise(device: Device) -> ActuatorCheck:
     rise = inductance * current / ends(parts["supply_voltage"])[0]
     period = ends(device.sample_period)[0]
     text = (
-        f"from 0 to {float(current):g} A the current takes {float(rise * 1000):.3g} ms, "
-        f"{float(100 * rise / period):.3g} % of a sample"
+        f"from 0 to {shown(current, 'A', 6)} the current takes {shown(rise, 's', 3)}, "
+        f"{shown(rise / period, '%', 3)} of a sample"
     )
     quick = rise <= QUICK * period
     verdict = "quick" if quick else "too slow for a force that is taken as instant: give it as delay"

@@ -86,8 +86,8 @@ class PulseTransferFunction(Environment):
         own = self.sample_period
         if own is not None and abs(own.fraction - sample_period) > _SAME_PERIOD * own.fraction:
             raise InputError(
-                f"H(z) was made for the sample period {float(own):.12g} s and the device samples every "
-                f"{float(sample_period):.12g} s; discretize it again, or change the device's rate"
+                f"H(z) was made for the sample period {shown(own, 's', 12)} and the device samples every "
+                f"{shown(sample_period, 's', 12)}; discretize it again, or change the device's rate"
             )
         return RationalFunction(_fractions(self.numerator), _fractions(self.denominator))
 

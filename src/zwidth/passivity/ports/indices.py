@@ -36,7 +36,7 @@ from zwidth.passivity.scope import Scope, unit_key
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 
 
 @dataclass(frozen=True, repr=False)
@@ -184,7 +184,7 @@ class SampledDamping:
         if self.required is None:
             return "no damping is enough"
         required = told_quantity(self.required, "damping", self.device.motion, 9)
-        return f"b ≥ {required}, tightest at {self.frequency:.6g} Hz"
+        return f"b ≥ {required}, tightest at {shown(self.frequency, 'Hz', 6)}"
 
     def __repr__(self) -> str:
         return f"<SampledDamping {self.describe()}>"
@@ -251,7 +251,7 @@ def _period(port: Port, device: Device) -> Fraction:
     period = device.exact("sample_period")
     if abs(period - port.period) > _SAME_PERIOD * period:
         raise InputError(
-            f"H(z) was made for the sample period {float(port.period):.12g} s and the device samples every "
-            f"{float(period):.12g} s; discretize it again, or change the device's rate"
+            f"H(z) was made for the sample period {shown(port.period, 's', 12)} and the device samples every "
+            f"{shown(period, 's', 12)}; discretize it again, or change the device's rate"
         )
     return period

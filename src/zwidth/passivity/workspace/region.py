@@ -161,7 +161,7 @@ class Covers(NamedTuple):
 
 def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
     """One sentence on what holds, others on what is not counted."""
-    part = 100 * account.proved.mean()
+    part = shown(account.proved.mean(), "%")
     where = f"{covers.region}{_up_to(covers)}"
     if outcome == "passive":
         text = f"No motion of the hand takes energy out with {where}, proved."
@@ -183,12 +183,10 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
         text = f"Whether a motion takes energy out behind these encoders is not known: {without}."
         without = ""
     elif (account.margins >= 0).all():
-        text = (
-            f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
-        )
+        text = f"The condition holds at every point; between the points {part} of the region are proved."
     else:
         text = (
-            f"{part:.4g} % of the region are proved; at other points the condition fails, and no motion was "
+            f"{part} of the region are proved; at other points the condition fails, and no motion was "
             f"{'looked for' if covers.gives_way else 'found that takes energy out'}."
         )
     if outcome in ("theorem", "undecided") and without:

@@ -18,19 +18,20 @@ from scipy.special import stdtrit
 from zwidth.data.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 from zwidth.data.logs import Finding
 from zwidth.native.compiled import Array
-from zwidth.quantity.spoken import spoken
+from zwidth.quantity.exact import Interval
+from zwidth.quantity.text import shown
 
 _UNITS = {
-    "mass": ("kg", "kg m²"),
-    "damping": ("N s/m", "N m s/rad"),
-    "coulomb_friction": ("N", "N m"),
-    "spring": ("N/m", "N m/rad"),
-    "stiffness": ("N/m", "N m/rad"),
-    "quadratic": ("N s²/m²", "N m s²/rad²"),
+    "mass": ("kg", "kg*m^2"),
+    "damping": ("N*s/m", "N*m*s/rad"),
+    "coulomb_friction": ("N", "N*m"),
+    "spring": ("N/m", "N*m/rad"),
+    "stiffness": ("N/m", "N*m/rad"),
+    "quadratic": ("N*s^2/m^2", "N*m*s^2/rad^2"),
     "force_lag": ("s", "s"),
-    "asymmetry": ("N s/m", "N m s/rad"),
-    "quadratic_asymmetry": ("N s²/m²", "N m s²/rad²"),
-    "slow": ("N", "N m"),
+    "asymmetry": ("N*s/m", "N*m*s/rad"),
+    "quadratic_asymmetry": ("N*s^2/m^2", "N*m*s^2/rad^2"),
+    "slow": ("N", "N*m"),
 }
 """Of each parameter, linear and rotary."""
 
@@ -72,9 +73,7 @@ class Estimate(NamedTuple):
         return low > 0 or high < 0
 
     def __str__(self) -> str:
-        factor, unit = spoken(self.unit)
-        low, high = (factor * end for end in self.interval())
-        return f"{factor * self.value:.4g} {unit} (95 %: {low:.4g} to {high:.4g})"
+        return f"{shown(self.value, self.unit)} (95 %: {shown(Interval(*self.interval()), self.unit)})"
 
 
 def unit_of(parameter: str, motion: str) -> str:
