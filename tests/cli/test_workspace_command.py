@@ -177,7 +177,7 @@ def test_a_wall_by_matrices(run, six):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("stiffness = [[1, 0], [0, 1]]", "it may be: wall"),
+        ("stiffness = [[1, 0], [0, 1]]", "choose from: wall"),
         ("[wall]\ndamping = [[1, 0], [0, 1]]", "stiffness"),
         ("[wall]\nstiffness = [[1, 0], [0]]", "square matrix"),
         ("[wall]\nstiffness = [[1, 0], [0, -1]]", "negative eigenvalue"),

@@ -228,7 +228,7 @@ TIED = {"stiffness": 1, "damping": 1}
     ("make", "said"),
     [
         *(
-            (lambda n=n: RecordedForce(np.ones(n)), rf"{n} values.*4 sample intervals.*{n / 1000} s")
+            (lambda n=n: RecordedForce(np.ones(n)), rf"{n} values.*4 sample intervals.*{n} ms")
             for n in (3, 5)
         ),
         (lambda: PrescribedMotion([0, 1, 2, 1]), r"positions has 4 values.*5 sample instants"),

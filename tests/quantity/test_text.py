@@ -14,6 +14,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.spoken import answers_as_typed, answers_in, spoken
 from zwidth.quantity.text import (
+    from_to,
     in_a_table,
     in_words,
     quantity_unit,
@@ -52,6 +53,10 @@ from zwidth.quantity.units import parse, parse_number
         (0.0525, "%", "5.25 %"),
         (2.3e-6, "m/N", "2.3 µm/N"),
         (nan, "N", "nan N"),
+        (0.0049, "kg", "4.9 g"),
+        (Interval(500, 2500), "Hz", "500 … 2500 Hz"),
+        (Interval(500e-6, 0.01), "N*m", "0.5 … 10 mN·m"),
+        (Interval(100, 20000), "N/m", "100 … 20000 N/m"),
         (0, "m", "0 m"),
         (1e30, "J", "1e+30 J"),
         (5e-324, "J", "4.941e-324 J"),
@@ -181,6 +186,10 @@ def test_units_and_keys_in_words():
     assert quantity_unit("damping") == "N·s/m"
     assert quantity_unit("stiffness", "rotary") == "N·m/rad"
     assert in_words("coulomb_friction") == "Coulomb friction"
+
+
+def test_a_range_as_it_is_said():
+    assert from_to(-0.05, 0.05, "m") == "-50 to 50 mm"
 
 
 def test_a_number_in_a_table():

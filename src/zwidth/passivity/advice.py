@@ -85,7 +85,7 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     ordered = sorted(advice, key=lambda item: (*_EASIEST_FIRST, item.parameter).index(item.parameter))
     useless = [a for a in ordered if a.to is None and a.current != 0]
     at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
-    none = "no slack" if passive else "no change found that would do alone"
+    none = "no slack" if passive else "none found that would do alone"
     return InLines(
         "slack" if passive else "what to change, any one of",
         tuple(item.text for item in ordered if item.to is not None and item not in at_limit),

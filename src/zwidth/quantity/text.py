@@ -20,7 +20,7 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _AS_IT_IS = {
     "m": (1.0, inf), "s": (1.0, inf), "m/s": (0.1, inf), "J": (1.0, 1e3), "Hz": (0.0, 1e3),
     "N": (0.01, 1e3), "N*m": (0.01, 1e3), "rad": (0.01, inf), "rad/s": (0.01, inf),
-    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.001, inf), "m/N": (1.0, inf),
+    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.01, inf), "m/N": (1.0, inf),
 }  # fmt: skip
 """From where to where people say a unit without a prefix: 0.12 N and 300 Hz, and 2.3 mm, 12 kHz."""
 
@@ -28,7 +28,7 @@ _FORCES = {"N*m": (0.01, 1e6), "N": (0.001, 1e6)}
 """The same of units that begin so: stiffness and damping of a wheel, and of a handle."""
 
 _FAR = 1e4
-"""How many times the smaller end of an interval the larger is, for both to have the prefix of the smaller."""
+"""Numbers of an interval stay below it, where a larger prefix helps."""
 
 
 def unit_text(unit: str) -> str:
@@ -78,12 +78,15 @@ def from_to(low: float, high: float, unit: str, digits: int = 4) -> str:
 
 
 def _between(value: Interval, unit: str, digits: int) -> str:
-    """Both ends with one prefix: that of the smaller one, unless it is 0 or far below the other."""
+    """Both ends with one prefix: that of the smaller one, or a larger that keeps the other short."""
     factor, unit = spoken(unit)
     ends = (float(value.low) * factor, float(value.high) * factor)
     small, large = sorted(abs(end) for end in ends)
-    least = small if small and large < _FAR * small else large
+    least = small or large
     power, name = _prefix(least, unit, digits)
+    while least < large >= _FAR * 10.0**power:
+        least *= 10
+        power, name = _prefix(least, unit, digits)
     return f"{' … '.join(_rounded(end / 10.0**power, digits) for end in ends)} {name}".rstrip()
 
 

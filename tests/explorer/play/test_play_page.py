@@ -66,7 +66,7 @@ def test_numbers_have_their_units(loops: list[Played]) -> None:
     first = next(iter(numbers.values()))
     assert first["law"] == "wall, 300 N/m"
     assert (first["resolution"], first["sample period"]) == ("22.4 µm", "1 ms")
-    assert first["hand"] == "0.006 kg, 500 N/m, 1.7 N·s/m"
+    assert first["hand"] == "6 g, 500 N/m, 1.7 N·s/m"
 
 
 _RUN = """\

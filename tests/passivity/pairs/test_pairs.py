@@ -492,7 +492,7 @@ def test_a_verdict_tells_what_is_needed():
         ({"drive_rate": 1500}, "whole times the 1000 Hz"),
         ({"drive_rate": "20 kHz", "leader": PADDLE.replace(delay="1 ms")}, "without delay"),
         ({"leader": 3}, "leader is a Device, got int"),
-        ({"follower": PADDLE.replace(rate="600 Hz")}, "1000 Hz and 600 Hz"),
+        ({"follower": PADDLE.replace(rate="600 Hz")}, "1 kHz and 600 Hz"),
         ({"follower": PADDLE.replace(motion="rotary")}, "linear leader and a rotary follower"),
         ({"follower": PADDLE.replace(damping=(0.1, 0.2))}, "follower: damping has no single value"),
     ],

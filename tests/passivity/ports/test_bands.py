@@ -39,7 +39,7 @@ def test_two_bands_each_with_a_motion():
         assert motion.frequency in band
         assert motion.verify()
     assert found.to_dict()["violated_Hz"] == [[band.low, band.high] for band in found.bands]
-    assert "violated 0.0954795 … 0.152316 Hz, 0.473955 … 0.558519 Hz" in repr(found)
+    assert "violated 0.0954795 to 0.152316 Hz, 0.473955 to 0.558519 Hz" in repr(found)
 
 
 @pytest.mark.parametrize(

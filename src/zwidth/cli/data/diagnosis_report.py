@@ -146,4 +146,4 @@ def _supposed(found: Diagnosis | PairDiagnosis) -> Iterator[str]:
         if two
         else "one degree of freedom; the hand is passive"
     )
-    yield "the confidence is that of simulated faults like those of the docs page"
+    yield "how sure it is, was counted on simulated faults"

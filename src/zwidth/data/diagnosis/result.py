@@ -18,7 +18,7 @@ from zwidth.data.diagnosis.vibration import nothing
 from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.quantity.answered import answered, answers, data_of
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import in_a_table, shown
 from zwidth.showing import Part, Shown, Table
 from zwidth.writing import check_target, writing_whole
 
@@ -225,7 +225,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
         v = self.seen.vibration
         length = "rad" if self.seen.rotary else "m"
         yield "frequency", f"{shown(v.frequency, 'Hz', 4)} ± {shown(v.frequency_spread, 'Hz', 2)}"
-        counts = f", {self.seen.counts:.3g} counts" if self.seen.resolution else ""
+        counts = f", {in_a_table(self.seen.counts, 3)} counts" if self.seen.resolution else ""
         yield "end to end", f"{shown(v.swing, length, 3)}{counts}"
         yield from rows_of_energy(self.seen.energy, self.seen.supplied, self.seen.lost)
         if (law := self.seen.law) is not None:

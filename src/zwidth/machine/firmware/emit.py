@@ -180,7 +180,7 @@ class Emitted(Result):
             *uncounted,
             actuator,
             f"readings from {low * spoken(unit)[0]:.10g} to {to}; beyond them nothing is claimed",
-            f"a force at each sample, {shown(late, 's')} after its reading (the delay), held to the next",
+            f"a force {shown(late, 's') + ' after' if late else 'at'} each reading, held to the next",
         )
 
     def to_dict(self) -> dict[str, Any]:

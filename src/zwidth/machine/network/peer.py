@@ -229,7 +229,15 @@ class LinkReport(Documented):
         """Six lines."""
         yield Table(rows=self.rows())
 
-    _HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+    _HEADS: ClassVar = [
+        "line",
+        "sent",
+        "received",
+        "lost",
+        "there and back, 99 %",
+        "energy out",
+        "energy in",
+    ]
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""
@@ -244,7 +252,7 @@ class LinkReport(Documented):
     def _trips(self) -> str:
         if math.isnan(self.round_trip[0]):
             return "—"
-        return ", ".join(f"{1e3 * t:.3g}" for t in self.round_trip[:2]) + " ms"
+        return ", ".join(shown(t, "s", 3) for t in self.round_trip[:2])
 
     @property
     def brief(self) -> str:

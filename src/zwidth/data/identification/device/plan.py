@@ -132,7 +132,7 @@ class MeasurementPlan(Shown):
 
 def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
-    known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
+    known = f"{symbol} to ±{shown(plan.precision, '%', 3)}, {shown(plan.confidence, '%')} confidence"
     yield f"To know {known}; it sets the limit K = {wall}:"
     yield _reached(plan)
     yield (
