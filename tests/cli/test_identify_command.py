@@ -47,7 +47,7 @@ def test_the_report(run):
         "2b/T",
         "2f_c/Δ",
         "r² = ",
-        "a mass–damper model of the same data would say",
+        "a mass and a damper alone would have",
         "damping limits the wall",
         "times as long would halve the interval",
         "resolution 22.4 µm from the positions",

@@ -38,7 +38,7 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
     if not SOFTEST <= stiffness <= STIFFEST:
         yield (
             f"a stiffness at once of {shown(stiffness, 'N/m', 3)} is hardly soft tissue under a probe, "
-            f"{from_to(SOFTEST, STIFFEST, 'N/m')}: most likely mm are read as m, or mN as N"
+            f"{from_to(SOFTEST, STIFFEST, 'N/m')}: most likely a unit is off by 1000"
         )
     if depth > DEEPEST or 0 < depth < SHALLOWEST:
         yield (
