@@ -165,7 +165,7 @@ def test_files_are_not_replaced_unasked(run, refused):
         ("plain.csv --model best", "--model is coulomb-viscous or viscous"),
         ("plain.csv --motion round", "--motion is linear or rotary"),
         ("plain.csv --mass '3 m'", "mass is in kg"),
-        ("plain.csv --rate '50 Hz'", "0.001 s apart"),
+        ("plain.csv --rate '50 Hz'", "1 ms apart"),
         ("plain.csv -o mine.txt", "a device is saved as TOML"),
         ("plain.csv --plot mine.txt", "must end in .png"),
         ("short.csv", "move to and fro"),

@@ -294,9 +294,8 @@ def frame_of(
     ratio = delay / period
     if signals.switch_position is not None and ratio.denominator == 1:
         raise InputError(
-            "a motion with switch positions says where the handle is when the force changes within a sample "
-            f"interval, but with a delay of {shown(device.exact('delay'), 's', 6)} it changes at the "
-            "samples: take the device that the motion was found for"
+            "a motion with switch positions is of a force that changes between samples, and with a delay of "
+            f"{shown(device.exact('delay'), 's', 6)} it changes at them: take the device of the motion"
         )
     offset = float(ratio % 1 * period)
     late = min(ratio.numerator // ratio.denominator, samples + 1)  # later than all is late enough

@@ -22,7 +22,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.system import is_system, time_of
-from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.environment.transfer_function import as_environment, require_period
 from zwidth.passivity import parameter_limits
 from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.linear.criterion import frequency, tightest
@@ -158,9 +158,6 @@ def passivity_indices(
 # b + T z⁻ᵈ H/(z − 1) to be positive real.
 
 
-_SAME_PERIOD = Fraction(1, 10**9)
-
-
 @dataclass(frozen=True)
 class SampledDamping:
     """The damping that a device must have for H(z), sampled and held, to give out no energy."""
@@ -249,9 +246,5 @@ def _integrated(port: Port, period: Fraction, delay: int) -> Port:
 
 def _period(port: Port, device: Device) -> Fraction:
     period = device.exact("sample_period")
-    if abs(period - port.period) > _SAME_PERIOD * period:
-        raise InputError(
-            f"H(z) was made for the sample period {shown(port.period, 's', 12)} and the device samples every "
-            f"{shown(period, 's', 12)}; discretize it again, or change the device's rate"
-        )
+    require_period(port.period, period)
     return period

@@ -80,10 +80,9 @@ def refuse_disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_k
         return
     raise InputError(
         f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's force "
-        f"and {actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely one "
-        "of them has another unit or scale than was stated, the load cell is at the end of its range, or "
-        "more than the actuator and the finger act on the device; check both with a known weight, or leave "
-        'one out with columns={"hand_force": None} and the device given'
+        f"and {actuator} by the actuator's: a unit or a scale is not as stated, the load cell is at "
+        "the end of its range, or something else pushes too; check both with a known weight, or leave one "
+        'out with columns={"hand_force": None} and the device given'
     )
 
 

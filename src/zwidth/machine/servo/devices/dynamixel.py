@@ -293,10 +293,9 @@ class Dynamixel(BusServo):
             )
         if mode & _REVERSE and self.reverse is None:
             raise InputError(
-                f"{self._name} is reversed by its Drive Mode {_DRIVE_MODE}: by the e-Manual that inverts its "
-                "positions, and its currents too on the X540 and XW540 alone, so that on others a wall pulls "
-                "in; clear bit 0, or try by hand which way a current turns it and give reverse = true or "
-                "false"
+                f"{self._name} is reversed by its Drive Mode {_DRIVE_MODE}, which inverts positions, and "
+                "currents on X540 and XW540 alone: on others a wall pulls in; clear bit 0, or try by hand "
+                "which way a current turns it and give reverse = true or false"
             )
         return mode
 
