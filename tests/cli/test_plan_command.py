@@ -26,4 +26,4 @@ def test_a_file_of_a_device_in_intervals_is_a_guess(run):
         "resolution = 2.24e-05\nsample_period = 0.001\n",
         encoding="utf-8",
     )
-    assert "To know b within" in run("plan mine.toml --force-noise 0.1").out
+    assert "To know b to ±" in run("plan mine.toml --force-noise 0.1").out

@@ -134,7 +134,7 @@ def test_the_protocol_can_be_followed():
     )
     text = repr(zw.plan(wheel, force_noise=1e-3, length=1.5))
     assert "strokes of some 1.5 rad" in text
-    assert "N m will act" in text
+    assert "N·m will act" in text
 
 
 @pytest.mark.parametrize(
