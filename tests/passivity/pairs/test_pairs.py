@@ -489,7 +489,7 @@ def test_a_verdict_tells_what_is_needed():
         ({"delay": (-1, 0)}, "delay there must be ≥ 0"),
         ({"delay": 1}, "at most 400"),
         ({"delay": "soon"}, "delay there"),
-        ({"drive_rate": 1500}, "whole times the 1000 Hz"),
+        ({"drive_rate": 1500}, "whole times the 1 kHz"),
         ({"drive_rate": "20 kHz", "leader": PADDLE.replace(delay="1 ms")}, "without delay"),
         ({"leader": 3}, "leader is a Device, got int"),
         ({"follower": PADDLE.replace(rate="600 Hz")}, "1 kHz and 600 Hz"),
