@@ -59,7 +59,7 @@ def suggestion(text: str, known: Iterable[str], option: str = "", more: str = ""
             option.format(one.replace("_", "-")) if option else f'"{one_line(one, 60)}"' for one in found
         )
         return f"did you mean {' or '.join(written)}?"
-    return more or f"it may be: {', '.join(names)}"
+    return more or f"choose from: {', '.join(names)}"
 
 
 _ALIKE, _THE_SAME = 0.6, 0.85

@@ -156,7 +156,7 @@ def test_check_decides_laws_in_a_row(run):
 BAD = [
     ("[law]\n", "laws are tables in a row, each with [[law]] above its keys"),
     ("law = 3\n", "laws are tables in a row"),
-    ("[[law]]\n", "[[law]]: type is missing; it may be: extrapolation"),
+    ("[[law]]\n", "[[law]]: type is missing; choose from: extrapolation"),
     ("[[law]]\ntype = 3\n", "type is a text in quotes"),
     ('[[law]]\ntype = "dampr"\n', 'there is no law "dampr"; did you mean "damper"?'),
     ('[[law]]\ntype = "damper"\n', 'the law "damper" needs damping [N*s/m]'),

@@ -66,7 +66,7 @@ def test_report_of_an_active_paddle(run):
     out = run(f"{ACTIVE} --all", 1).out
     assert "takes 1.427 mJ out" in out
     assert "2 samples in 2 ms" in out
-    change, useless = "lower the stiffness from 770 N/m to 300 N/m", "no change found that would do alone"
+    change, useless = "lower the stiffness from 770 N/m to 300 N/m", "none found that would do alone"
     assert out.index(change) < out.index(useless)
 
 

@@ -223,7 +223,7 @@ REFUSED = {
         "--stiffness 1 --torque-held-up-to 1,2,3": "a moment",
         "--stiffness 1 -o proof.jsn": "a file must end in .json for the verdict",
         "--stiffness 1 --delay '0.3 ms'": "whole number of samples",
-        "--stiffness 1 --delay 3": "delay is 3 s, 3000 samples",
+        "--stiffness 1 --delay 3": "got 3 s, 3000 at 1 kHz",
         "--stiffness 1 --largest-force 3": "--joint-resolution 0.001",
         "--stiffness 1 --largest-force 1,2,3": "--largest-force: a force",
     },

@@ -16,7 +16,7 @@ HAPLY = f"{CRANKS} 0.003 {NO_STEPS}"
 def test_a_wall_that_holds_everywhere(run):
     """Status 0, and nothing to change; 4 behind its own encoders, whose steps are not in the proof."""
     words = run(f"{HAPLY} --stiffness 300").words
-    assert "PASSIVE No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
+    assert "PASSIVE No motion of the hand takes energy out with x from -50 to 50 mm" in words
     assert "what to change" not in words
     assert "haply-2diy, 2 joints, 1 kHz" in words
     assert "The arm is taken to be read without steps. The torque" in words
@@ -177,7 +177,7 @@ def test_a_wall_by_matrices(run, six):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("stiffness = [[1, 0], [0, 1]]", "it may be: wall"),
+        ("stiffness = [[1, 0], [0, 1]]", "choose from: wall"),
         ("[wall]\ndamping = [[1, 0], [0, 1]]", "stiffness"),
         ("[wall]\nstiffness = [[1, 0], [0]]", "square matrix"),
         ("[wall]\nstiffness = [[1, 0], [0, -1]]", "negative eigenvalue"),

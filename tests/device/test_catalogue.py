@@ -92,7 +92,7 @@ def test_overrides():
     ("name", "overrides", "part"),
     [
         ("phantm", {}, 'did you mean "phantom"'),
-        ("", {}, "it may be: haptic-paddle"),
+        ("", {}, "choose from: haptic-paddle"),
         ("phantom", {"dampng": 1}, 'did you mean "damping"'),
         ("phantom", {"damping": "1 kg"}, "a mass"),
         ("phantom", {"damping": None}, "no source gives the damping"),

@@ -166,7 +166,7 @@ def test_a_rotary_file_is_in_its_units():
     ("old", "new", "said"),
     [
         ("encoder =", "encodr =", 'a transmission has no "encodr"; did you mean "encoder"'),
-        ("handle_mass =", "mass =", 'a transmission has no "mass"; it may be: damping, encoder, '),
+        ("handle_mass =", "mass =", 'a transmission has no "mass"; choose from: damping, encoder, '),
         ('"12 N/mm"', "0", "transmission.stiffness must be > 0 N/m, got 0"),
         ('"12 N/mm"', '"12 mm"', "transmission.stiffness is in N/m"),
         ('"handle"', '"hand"', 'transmission.encoder: there is no "hand"'),

@@ -85,7 +85,7 @@ def test_arms_that_are_moved_slowly_do_not_shake(tmp_path):
     columns |= {f"{arm}_torque_N_m": sign * 0.1 * t for arm, sign in (("leader", 1), ("follower", -1))}
     found = zw.diagnose_pair(written(tmp_path / "arms.csv", columns))
     assert found.cause is None
-    assert "0.6 s" in found.claim
+    assert "600 ms" in found.claim
     assert "8.3 Hz" in found.claim
 
 

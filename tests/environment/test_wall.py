@@ -47,7 +47,7 @@ def test_every_text_with_a_unit_is_read_where_a_number_is():
         (lambda: zw.Wall(1, "2 N/m"), r'damping is in N\*s/m; got "2 N/m", a stiffness'),
         (lambda: zw.Wall(1, 2, 3), r"velocity_filter is BackwardDifference\(\), .*, got int"),
         (lambda: zw.rendering.OnePole(-1), "time_constant must be ≥ 0 s, got -1: a filter with a negative"),
-        (lambda: zw.rendering.OnePole(1001), "time_constant must be at most 1000 s, got 1001"),
+        (lambda: zw.rendering.OnePole(1001), "time_constant must be ≤ 1000 s, got 1001"),
         (lambda: zw.rendering.VelocityFilter([1, 2, 3], [1, 2]), "cannot have more zeros"),
     ],
 )

@@ -1,6 +1,10 @@
 """Numbers and units as people read them, in the unit of angle in which the question was asked."""
 
-from math import inf, pi
+import ast
+import re
+from collections.abc import Iterator
+from math import inf, nan, pi
+from pathlib import Path
 
 import pytest
 from hypothesis import example, given
@@ -10,6 +14,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.spoken import answers_as_typed, answers_in, spoken
 from zwidth.quantity.text import (
+    from_to,
     in_a_table,
     in_words,
     quantity_unit,
@@ -45,6 +50,13 @@ from zwidth.quantity.units import parse, parse_number
         (300, "N/m", "300 N/m"),
         (0.15, "N*m*s/rad", "0.15 N·m·s/rad"),
         (5, "1", "5"),
+        (0.0525, "%", "5.25 %"),
+        (2.3e-6, "m/N", "2.3 µm/N"),
+        (nan, "N", "nan N"),
+        (0.0049, "kg", "4.9 g"),
+        (Interval(500, 2500), "Hz", "500 … 2500 Hz"),
+        (Interval(500e-6, 0.01), "N*m", "0.5 … 10 mN·m"),
+        (Interval(100, 20000), "N/m", "100 … 20000 N/m"),
         (0, "m", "0 m"),
         (1e30, "J", "1e+30 J"),
         (5e-324, "J", "4.941e-324 J"),
@@ -103,6 +115,67 @@ def test_a_value_reads_as_people_say_it(size, sign, unit, digits, in_degrees):
         assert "e" not in number
 
 
+SOURCE = Path(__file__).parents[2] / "src/zwidth"
+A_UNIT = re.compile(r" ?[%°]| [pnµmkMG]?(m|s|g|N|Hz|J|rad|deg|A|V|H|W|Ω)(?![A-Za-z])")
+A_NAME = re.compile(r"unit|'(m|N|rad)\b")
+A_NUMBER = re.compile(r"[.0-9]*[efg]")
+BY_THEMSELVES = {
+    "checker/": "imports nothing of the project",
+    "cli/check/verify.py": "energies beyond every double",
+    "cli/data/diagnosis_report.py: unit": "an option to be typed",
+    "cli/new/": "what is typed into a file",
+    "cli/workspace/arm.py: 'N·s/m' if slid": "six digits each in a list",
+    "data/diagnosis/causes.py: ° ": "an angle between two sinusoids, whichever angle was typed",
+    "data/diagnosis/pairs/diagnose.py: ° of the motion": "the same",
+    "machine/servo/live/rows.py": "changes many times a second: as many decimals and one unit throughout",
+    "model/arms/reading.py: 'm' if": "ends that may be infinite",
+    "model/rendering/velocity.py: unit": "(m/s²)/√Hz is a unit that is not read",
+    "model/specification/read.py": "says what was typed, and what to type",
+    "passivity/stability/shaking_hand.py: unit": "hours and minutes",
+    "show/explorer/arms.py: unit": "what is typed into a field",
+    "show/explorer/controls.py: unit": "the same",
+    "show/explorer/state.py: unit": "the same",
+}
+"""Where `shown` is not asked, and why: a file, or one and what stands behind the number there."""
+
+
+def by_themselves(text: str) -> Iterator[str]:
+    """What stands behind a number in an f-string and begins like a unit; a number quoted as given, !r, aside.
+
+    Of `{x:.4g} {unit}` the name.
+    """
+    for node in ast.walk(ast.parse(text)):
+        parts = [*node.values, None] if isinstance(node, ast.JoinedStr) else []
+        for number, after, unit in zip(parts, parts[1:], [*parts[2:], None], strict=False):
+            if not isinstance(number, ast.FormattedValue) or not isinstance(after, ast.Constant):
+                continue
+            if A_UNIT.match(str(after.value)) and number.conversion == -1:
+                yield str(after.value)
+            spec = ast.unparse(number.format_spec)[2:-1] if number.format_spec else ""
+            name = ast.unparse(unit) if isinstance(unit, ast.FormattedValue) else ""
+            if after.value == " " and A_NUMBER.fullmatch(spec) and A_NAME.search(name):
+                yield ast.unparse(unit.value)
+
+
+def test_no_text_writes_a_unit_by_itself():
+    """Each f-string of the source has its numbers with units from `shown`, or a reason here."""
+    found = [
+        f"{path.relative_to(SOURCE).as_posix()}: {after}"
+        for path in sorted(SOURCE.rglob("*.py"))
+        for after in by_themselves(path.read_text(encoding="utf-8"))
+    ]
+    new = [one for one in found if not one.startswith(tuple(BY_THEMSELVES))]
+    assert not new, f"these are written by zwidth.quantity.text.shown: {new}"
+    over = [one for one in BY_THEMSELVES if not any(each.startswith(one) for each in found)]
+    assert not over, f"nothing there needs its reason any more: {over}"
+
+
+def test_a_unit_that_is_written_by_itself_is_found():
+    written = 'f"{x:.3g} ms late"; f"{x} N·m"; f"{100 * y:.0f} % of it"; f"{x:g} {unit}"'
+    assert sorted(by_themselves(written)) == [" % of it", " N·m", " ms late", "unit"]
+    assert not [*by_themselves('f"{n} samples, {x!r} s, {a} made, {shown(x, unit)}; {x:.3g} times"')]
+
+
 def spoken_in_degrees(unit):
     with answers_in("deg"):
         return spoken(unit)[1]
@@ -113,6 +186,10 @@ def test_units_and_keys_in_words():
     assert quantity_unit("damping") == "N·s/m"
     assert quantity_unit("stiffness", "rotary") == "N·m/rad"
     assert in_words("coulomb_friction") == "Coulomb friction"
+
+
+def test_a_range_as_it_is_said():
+    assert from_to(-0.05, 0.05, "m") == "-50 to 50 mm"
 
 
 def test_a_number_in_a_table():

@@ -29,7 +29,7 @@ def test_a_spring_becomes_a_line_as_stiff_that_brings_its_mass():
     assert (near.scene.port, far.scene.port) == ("handle", "")
     assert [e.title for e in near.ends] == [e.title for e in far.ends] == ["spring m1–m2"]
     assert len(near.scene.elements) + len(far.scene.elements) == len(chain([500, 100]).elements) - 1 + 2
-    assert "0.4 g" in repr(made)
+    assert "400 mg" in repr(made)
     assert "100 N/m" in repr(made)
 
 
@@ -38,7 +38,7 @@ def test_a_body_in_two_parts_becomes_a_line_as_heavy_that_gives_way():
     (line,) = made.lines
     assert (line.parts, line.nodes, line.in_place_of) == (("near", "far"), ("m1", "m1 in far"), "mass m1")
     assert line.mass == pytest.approx(0.1)
-    assert line.adds() == f"{1e3 * 0.002**2 / 0.1:.4g} mm/N"
+    assert line.adds() == f"{1e6 * 0.002**2 / 0.1:.4g} µm/N"
     near, far = made.parts
     assert [e.title for e in near.scene.elements] == [
         "mass m1",

@@ -257,7 +257,7 @@ def test_the_delay_that_was_measured_is_in_the_verdict(monkeypatch):
         (lambda one, other: PairServo(ARM, one, other), "is a zwidth.Pair"),
         (
             lambda one, other: PairServo(PAIR.replace(leader=ARM.replace(rate=5000)), one, other),
-            "measured and computed at one rate, got 5000 Hz, 1000 Hz",
+            "measured and computed at one rate, got 5 kHz, 1 kHz",
         ),
         (lambda one, other: PairServo(PAIR.replace(drive_rate=10_000), one, other), "drive_rate of 10000"),
         (lambda one, other: PairServo(PAIR, one, ARM), "follower is reached by one of"),

@@ -284,7 +284,7 @@ BAD: list[tuple[str | bytes, str]] = [
     (bad('catalogue = "phantm"'), 'did you mean "phantom"'),
     (bad('catalogue = "sigma.7"'), '--damping "0.1 N*s/m" --rate "1 kHz"'),
     (bad("catalogue = 1"), "catalogue is a text"),
-    (DEVICE + "[environment]\nstiffness = 1", "type is missing; it may be: wall"),
+    (DEVICE + "[environment]\nstiffness = 1", "type is missing; choose from: wall"),
     (DEVICE + "[environment]\ntype = 1", "type is a text"),
     (DEVICE + '[environment]\ntype = "wal"\nstiffness = 1', 'did you mean "wall"'),
     (DEVICE + '[environment]\ntype = "wall"', "needs stiffness [N/m]"),

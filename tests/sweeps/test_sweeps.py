@@ -382,7 +382,7 @@ def test_a_loop_that_cannot_be_is_said_to_be_refused():
     assert found.refused.values.tolist() == [False, True, False]
     assert found.outcome.values[1] == ""
     assert np.isnan(found.max_stiffness.values[1])
-    assert "leader.rate = 1500 Hz: one arm reads a whole number" in found.attrs["first_refused"]
+    assert "leader.rate = 1.5 kHz: one arm reads a whole number" in found.attrs["first_refused"]
 
 
 @pytest.mark.parametrize(

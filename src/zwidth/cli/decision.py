@@ -165,7 +165,7 @@ def hand_rows(found: Mapping[str, Stability]) -> Iterator[tuple[str, str]]:
 
 
 def _said(found: Stability) -> str:
-    from zwidth.quantity.text import told_quantity
+    from zwidth.quantity.text import shown, told_quantity
 
     most = found.max_stiffness
     up_to = f"up to {told_quantity(most, 'stiffness', found.scope.motion, 4)}" if most else ""
@@ -174,6 +174,6 @@ def _said(found: Stability) -> str:
     rest = f"; comes to rest {up_to}" if up_to else ""
     if found.outcome == "undecided":
         return f"not decided{rest}"
-    return (
-        f"is shaken, at {found.frequency:.4g} Hz{rest}" if found.frequency else f"does not come to rest{rest}"
-    )
+    if not found.frequency:
+        return f"does not come to rest{rest}"
+    return f"is shaken, at {shown(found.frequency, 'Hz')}{rest}"

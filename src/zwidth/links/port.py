@@ -235,9 +235,8 @@ def _samples_late(device: Device) -> int:
     if late.denominator > 1 or late > memory.MOST_LATE:
         raise InputError(
             f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
-            f"{float(late):g}: else two forces act in one period, whose two displacements are read as one; "
-            "let the loop keep each force back until the sample ends, which hold_back, or --hold-back, takes "
-            "for granted"
+            f"{float(late):g}: else two forces act in one period; let the loop keep each force until the "
+            "sample ends, as hold_back, or --hold-back, takes for granted"
         )
     return int(late)
 

@@ -21,6 +21,7 @@ from zwidth.loop.trace import Trace
 from zwidth.model.pairs import Pair
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -122,8 +123,8 @@ def check_ends(leader: Port, follower: Port) -> None:
     periods = [port.device.exact("sample_period") for port in (leader, follower)]
     if periods[0] != periods[1]:
         raise InputError(
-            f"both devices are simulated with one sample period, got {float(periods[0]):g} s and "
-            f"{float(periods[1]):g} s; the ports themselves may differ"
+            f"both devices are simulated with one sample period, got {shown(periods[0], 's', 6)} and "
+            f"{shown(periods[1], 's', 6)}; the ports themselves may differ"
         )
 
 

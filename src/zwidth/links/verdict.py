@@ -21,7 +21,7 @@ from zwidth.passivity.scope import Outcome, Scope, unit_key
 from zwidth.passivity.wording import NOT_FOUND, TRANSMISSION, takes_none
 from zwidth.quantity.exact import ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
-from zwidth.quantity.text import exact_text, quantity_unit
+from zwidth.quantity.text import exact_text, told_quantity
 
 
 def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
@@ -120,8 +120,8 @@ class PortVerdict(PassivityAnswer):
         yield "no period is longer than the sample period: in a longer one friction takes less"
         yield "friction is b and f_c of the device at least, at every speed and in every period"
         if device.friction_speed is not None:
-            unit = quantity_unit("friction_speed", device.motion)
-            yield f"they were measured up to {float(ends(device.friction_speed)[0]):.6g} {unit}"
+            seen = told_quantity(ends(device.friction_speed)[0], "friction_speed", device.motion)
+            yield f"they were measured up to {seen}"
         if self.scope.encoder == "counted":
             yield "encoder counts, their phase unknown; none is lost"
         else:

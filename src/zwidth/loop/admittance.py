@@ -35,6 +35,7 @@ from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import one_of, read_number
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -174,8 +175,8 @@ def _hand(operator: Operator) -> LinearHand:
     hand = operator.hand
     if hand.mass != 0.0:
         raise InputError(
-            f"the hand has a mass of {hand.mass:g} kg, and an ideal motion source changes its velocity at "
-            "once: the force would be an impulse; give mass=0, and a heavier virtual body"
+            f"the hand has a mass of {shown(hand.mass, 'kg', 6)}, and an ideal motion source changes its "
+            "velocity at once: the force would be an impulse; give mass=0, and a heavier virtual body"
         )
     return hand
 

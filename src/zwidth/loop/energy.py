@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
@@ -156,8 +157,8 @@ class Ledger(Shown):
         """What people read: each total in words [J]; the hand's own only where it has any."""
         totals = self.totals
         own = any(totals[name] for name in ("hand_spring_energy", "hand_damper_loss", "hand_kinetic_energy"))
-        shown = [name for name in totals if own or not name.startswith("hand_") or name == "hand_work"]
-        rows = [(_ROWS[name], totals[name]) for name in shown]
+        told = [name for name in totals if own or not name.startswith("hand_") or name == "hand_work"]
+        rows = [(_ROWS[name], totals[name]) for name in told]
         worst = float(max(np.abs(self.residual).max(), np.abs(self.hand_residual).max()))
         rows += [("energy balance error, at most", worst), ("the hand got out at most", self.got_out)]
         if isnan(self.held_at_start) or not self.held_at_start:
@@ -168,7 +169,7 @@ class Ledger(Shown):
         """The rows, below the time that they are of."""
         seconds = float(self.trace["time"].values[-1] - self.trace["time"].values[0])
         rows = [(text, f"{value:.6e}") for text, value in self.rows()]
-        yield Table(heads=[(f"energy over {seconds:g} s", "J")], rows=rows, lefts=1)
+        yield Table(heads=[(f"energy over {shown(seconds, 's', 6)}", "J")], rows=rows, lefts=1)
 
 
 def ledger(trace: AnyTrace) -> Ledger:
@@ -299,7 +300,7 @@ class PairLedger(Shown):
         """The rows, below the time that they are of."""
         time = self.trace["time"].values
         rows = [(text, f"{value:.6e}") for text, value in self.rows()]
-        yield Table(heads=[(f"energy over {float(time[-1] - time[0]):g} s", "J")], rows=rows, lefts=1)
+        yield Table(heads=[(f"energy over {shown(time[-1] - time[0], 's', 6)}", "J")], rows=rows, lefts=1)
 
 
 def of_one_arm(one: AnyTrace) -> AnyTrace:

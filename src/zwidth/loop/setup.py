@@ -26,6 +26,7 @@ from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -293,9 +294,8 @@ def frame_of(
     ratio = delay / period
     if signals.switch_position is not None and ratio.denominator == 1:
         raise InputError(
-            "a motion with switch positions says where the handle is when the force changes within a sample "
-            f"interval, but with a delay of {float(device.exact('delay')):g} s it changes at the samples: "
-            "take the device that the motion was found for"
+            "a motion with switch positions is of a force that changes between samples, and with a delay of "
+            f"{shown(device.exact('delay'), 's', 6)} it changes at them: take the device of the motion"
         )
     offset = float(ratio % 1 * period)
     late = min(ratio.numerator // ratio.denominator, samples + 1)  # later than all is late enough
@@ -354,7 +354,8 @@ def whole_samples(duration: RealLike, period: Fraction) -> int:
     samples = length.fraction / period
     whole = samples.numerator // samples.denominator
     if whole < 1:
-        raise InputError(f"duration must be one sample period {float(period):g} s at least, got {length:g} s")
+        least, given = shown(period, "s", 6), shown(length, "s", 6)
+        raise InputError(f"duration must be one sample period, {least}, at least; got {given}")
     return whole
 
 
@@ -396,8 +397,8 @@ def _check_pieces(plant: Plant, period: float, kinematic: bool) -> None:
     tied = plant.stiffness > 0 or plant.lag > 0 or plant.slew > 0
     if tied and ceil(rate * period) > MOST_PIECES:
         raise InputError(
-            f"{name} gives a time constant of {1 / rate:.3g} s, over {MOST_PIECES} times shorter than the "
-            f"sample period {period:g} s: on this scale it is rigid; prescribe the motion, or leave it out"
+            f"{name} gives a time constant of {shown(1 / rate, 's', 3)}, over {MOST_PIECES} times below the "
+            f"sample period {shown(period, 's', 6)}: it is rigid; prescribe the motion, or leave it out"
         )
 
 

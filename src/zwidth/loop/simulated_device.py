@@ -28,6 +28,7 @@ from zwidth.model.rendering.bounding import ForceBounding
 from zwidth.model.rendering.rendered import Rendered
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -163,7 +164,7 @@ class SimulatedDevice:
             raise InputError(
                 f"all {self.samples + 1} samples have their force: take a longer duration, or ask `finished`"
             )
-        self._memory[_GIVEN] = _number(force, f"the force at {self.time:g} s", "N")
+        self._memory[_GIVEN] = _number(force, f"the force at {shown(self.time, 's', 6)}", "N")
         first = self._done
         run_samples(
             self._setup, first, first + 1, self._state, self._memory, self._work, self._commands, self._record

@@ -17,6 +17,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.parameter import Parametric, Reads, part, read_number
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,7 +95,9 @@ class Timing(Parametric):
 
     def describe(self) -> str:
         """In words."""
-        late = f"up to {self.lateness:g} s late" if np.ndim(self.lateness) == 0 else "lateness as recorded"
+        late = "lateness as recorded"
+        if isinstance(self.lateness, (int, float)):
+            late = f"up to {shown(self.lateness, 's', 6)} late"
         lost = f"{self.missed:.4g} of them missed" if np.ndim(self.missed) == 0 else "missed as recorded"
         return f"samples {late}, {lost}, seed {self.seed}"
 
@@ -112,6 +115,6 @@ def _of_length(values: object, length: int, what: str) -> Array:
 
 def _lateness(value: object, period: float) -> str:
     return (
-        f"lateness must be ≥ 0 s and below the sample period {period:g} s, got {value}: samples keep their "
-        "order; a longer pause is a missed sample"
+        f"lateness must be ≥ 0 s and below the sample period {shown(period, 's', 6)}, got {value}: samples "
+        "keep their order; a longer pause is a missed sample"
     )

@@ -14,6 +14,7 @@ from zwidth.model.device.device import Device
 from zwidth.model.operator.operator import Operator
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import Interval
+from zwidth.quantity.text import shown
 
 
 class TwoMasses(NamedTuple):
@@ -95,8 +96,8 @@ def numbers_of(device: Device, operator: Operator, motor: Plant, most: int) -> A
     )
     if pieces_of_two(two, period) > most:
         raise InputError(
-            f"motor, handle and transmission move over {most} times faster than the sample period {period:g} "
-            "s: on this scale they are rigid; give the device without its transmission"
+            f"motor, handle and transmission move over {most} times faster than the sample period "
+            f"{shown(period, 's', 6)}: on this scale they are rigid; give the device without its transmission"
         )
     return np.array([*two.motor, *two.handle, *two[2:]])
 

@@ -256,7 +256,7 @@ class Pair(Parametric):
     def _check_clocks(self) -> None:
         quick, slow = sorted(device.exact("sample_period") for device in (self.leader, self.follower))
         if slow % quick:
-            rates = " and ".join(f"{float(1 / period):g} Hz" for period in (quick, slow))
+            rates = " and ".join(shown(1 / period, "Hz", 6) for period in (quick, slow))
             raise InputError(
                 f"one arm reads a whole number of times as often as the other, got {rates}: give both the "
                 "slower rate, or the rate of the bus that reads both"
@@ -287,8 +287,8 @@ class Pair(Parametric):
         if often.denominator != 1 or not 1 <= often <= MOST_READINGS:
             raise InputError(
                 f"drive_rate must be 1 to {MOST_READINGS} whole times the "
-                f"{float(1 / self.sample_period):g} Hz of the references, got {float(rate):g} Hz: the loop "
-                "of the drive and the bus are taken in step"
+                f"{shown(1 / self.sample_period, 'Hz', 6)} of the references, got {shown(rate, 'Hz', 6)}: "
+                "the loop of the drive and the bus are taken in step"
             )
 
     @cached_property

@@ -102,7 +102,7 @@ def in_lines(advice: Iterable[Advice], passive: bool) -> InLines:
     ordered = easiest_first(advice)
     useless = [a for a in ordered if a.to is None and a.current != 0]
     at_limit = [a for a in ordered if a.to is not None and a.is_at_limit]
-    none = "no slack" if passive else "no change found that would do alone"
+    none = "no slack" if passive else "none found that would do alone"
     return InLines(
         "slack" if passive else "what to change, any one of",
         tuple(item.text for item in ordered if item.to is not None and item not in at_limit),

@@ -134,7 +134,7 @@ class FiniteStiffnessReplay(Documented):
                 k = told_quantity(threshold.stiffness, "stiffness", self.motion, 3)
                 text = f"must be stiffer than {k}, quicker than {shown(threshold.bandwidth, 'Hz', 3)}"
             yield f"a hand on {told_quantity(threshold.mass, 'mass', self.motion, 3)}", text
-        yield "best hand tried", f"{100 * self.best_share:.3g} % of the ideal energy"
+        yield "best hand tried", f"{shown(self.best_share, '%', 3)} of the ideal energy"
 
     def report(self) -> Iterable[Part]:
         """The rows."""

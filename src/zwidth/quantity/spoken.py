@@ -113,7 +113,12 @@ def angles_typed() -> frozenset[str]:
 
 
 def spoken(unit: str) -> tuple[float, str]:
-    """(factor, unit) in which a value in an SI unit is told: (π/180, "N*m/deg") for "N*m/rad" in degrees."""
+    """(factor, unit) in which a value in an SI unit is told: (π/180, "N*m/deg") for "N*m/rad" in degrees.
+
+    A part of one is told in "%".
+    """
+    if unit == "%":
+        return 100.0, unit
     noted = _NOTED.get()
     return _spoken(unit, _told(frozenset(noted))) if noted else (1.0, unit)
 

@@ -20,7 +20,7 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _AS_IT_IS = {
     "m": (1.0, inf), "s": (1.0, inf), "m/s": (0.1, inf), "J": (1.0, 1e3), "Hz": (0.0, 1e3),
     "N": (0.01, 1e3), "N*m": (0.01, 1e3), "rad": (0.01, inf), "rad/s": (0.01, inf),
-    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.01, inf),
+    "A": (0.01, 1e3), "V": (0.01, 1e3), "H": (0.01, 1e3), "kg": (0.01, inf), "m/N": (1.0, inf),
 }  # fmt: skip
 """From where to where people say a unit without a prefix: 0.12 N and 300 Hz, and 2.3 mm, 12 kHz."""
 
@@ -28,7 +28,7 @@ _FORCES = {"N*m": (0.01, 1e6), "N": (0.001, 1e6)}
 """The same of units that begin so: stiffness and damping of a wheel, and of a handle."""
 
 _FAR = 1e4
-"""How many times the smaller end of an interval the larger is, for both to have the prefix of the smaller."""
+"""Numbers of an interval stay below it, where a larger prefix helps."""
 
 
 def unit_text(unit: str) -> str:
@@ -54,7 +54,7 @@ def in_words(key: str, motion: str = "linear") -> str:
     return " ".join(_TURNING.get(word, word) if motion == "rotary" else word for word in words)
 
 
-def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) -> str:
+def shown(value: float | Fraction | Exact | Interval | None, unit: str, digits: int = 4) -> str:
     """A value with its unit, to `digits` significant digits, as people say it: 22.4e-6 m is "22.4 µm".
 
     The one place where a number and its unit become text: an angle is in the unit that was typed, and where
@@ -73,18 +73,26 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     return f"{_rounded(number / 10.0**power, digits)} {name}".rstrip()
 
 
-def told_quantity(value: float | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:
+def told_quantity(value: float | Fraction | Exact | Interval, name: str, motion: str, digits: int = 6) -> str:
     """The same with the unit of a quantity of the glossary: "0.4 N·m/deg"."""
     return shown(value, GLOSSARY[name].unit_for(motion), digits)
 
 
+def from_to(low: float, high: float, unit: str, digits: int = 4) -> str:
+    """A range as it is said: "-50 to 50 mm"."""
+    return shown(Interval(low, high), unit, digits).replace("…", "to")
+
+
 def _between(value: Interval, unit: str, digits: int) -> str:
-    """Both ends with one prefix: that of the smaller one, unless it is 0 or far below the other."""
+    """Both ends with one prefix: that of the smaller one, or a larger that keeps the other short."""
     factor, unit = spoken(unit)
     ends = (float(value.low) * factor, float(value.high) * factor)
     small, large = sorted(abs(end) for end in ends)
-    least = small if small and large < _FAR * small else large
+    least = small or large
     power, name = prefixed(least, unit, digits)
+    while least < large >= _FAR * 10.0**power:
+        least *= 10
+        power, name = prefixed(least, unit, digits)
     return f"{' … '.join(_rounded(end / 10.0**power, digits) for end in ends)} {name}".rstrip()
 
 
@@ -94,7 +102,7 @@ def prefixed(number: float, unit: str, digits: int) -> tuple[int, str]:
     plain = unit.replace("·", "*")
     begins = (bounds for begin, bounds in _FORCES.items() if plain.startswith(begin))
     least, most = _AS_IT_IS.get(plain) or next(begins, (0.0, inf))
-    power = 3 * floor(floor(log10(size)) / 3) if size and not least <= size < most else 0
+    power = 3 * floor(floor(log10(size)) / 3) if size > 0 and not least <= size < most else 0
     if name == "kg" and power:
         return power, f"{PREFIXES.get(power + 3, '')}g"
     return (power, f"{PREFIXES[power]}{name}") if power in PREFIXES else (0, name)

@@ -126,8 +126,8 @@ def test_a_first_run_is_a_guess():
 def test_the_protocol_can_be_followed():
     text = repr(zw.plan(paddle(), force_noise=0.1))
     assert text.splitlines()[0].startswith("To know b, which sets the limit K = 2b/T, within ±5 % ")
-    assert "9 strokes of some 6 cm, 1 s each" in text
-    assert "84 strokes of some 6 cm, 0.25 s each" in text
+    assert "9 strokes of some 60 mm, 1 s each" in text
+    assert "84 strokes of some 60 mm, 250 ms each" in text
     assert "Expected: 3 runs of 30 s" in text
     wheel = zw.rotary(
         inertia=2e-4, damping=1e-3, coulomb_friction=5e-3, counts_per_turn=2000, sample_period="1 ms"

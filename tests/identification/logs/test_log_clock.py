@@ -154,7 +154,7 @@ def test_a_stated_rate_is_held_against_the_stamps(recording):
 
     assert "stated period" not in kinds(stated(1))
     log = stated(1.005)
-    assert "+0.5 %" in next(f.text for f in log.findings if f.kind == "stated period")
+    assert "0.5 % more" in next(f.text for f in log.findings if f.kind == "stated period")
     assert log.sample_period == 5e-4
     with pytest.raises(zw.InputError, match="stated are"):
         stated(1.05)

@@ -230,7 +230,7 @@ def test_it_says_its_masses():
     assert masses(200, 0).describe().startswith("passive for no mass: virtual coupling")
     assert masses(200, 0, integrator="backward-euler").describe().startswith("passive for every mass")
     two = masses(200, "0.02", integrator="trapezoidal")
-    assert two.describe().startswith("passive up to 3.32887e-05 kg and from 6.77575e-05 kg on")
+    assert two.describe().startswith("passive up to 33.2887 mg and from 67.7575 mg on")
     assert "a millionth beyond" in "".join(str(part) for part in two.report())
 
 

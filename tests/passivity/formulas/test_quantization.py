@@ -244,7 +244,7 @@ def test_ideal_encoder():
         (lambda: q.edge_crossing(PADDLE, 10714), r"does not exceed 2f_c/Δ = 10714\.3"),
         (lambda: q.fast_press(IDEAL, 770), "no edges to count"),
         (lambda: q.edge_crossing(IDEAL, 770), "no edges to count"),
-        (lambda: q.worst_case(PADDLE.replace(delay="0.001"), 300, 1), "without delay, got 0.001 s"),
+        (lambda: q.worst_case(PADDLE.replace(delay="0.001"), 300, 1), "without delay, got 1 ms"),
         (lambda: q.plane_point(PADDLE.replace(damping=(0.1, 0.2)), 300), "damping has no single value"),
         (lambda: q.plane_point(PADDLE.replace(resolution=0, coulomb_friction=0), 300), "σ = f_c"),
         (lambda: q.plane_point(PADDLE, 300).cycle_loss(0), "step must be > 0 counts"),

@@ -280,7 +280,7 @@ CHAIN = built_in("two-link", damping=0.01)
         (CHAIN, zw.Wall(100), {"rate": 0}, "rate"),
         (CHAIN, zw.Wall(100), {"delay": 0.0005}, "whole number of samples"),
         (CHAIN, zw.Wall(100), {"delay": -1}, "delay"),
-        (CHAIN, zw.Wall(100), {"delay": 3}, 'delay is 3 s, 3000 samples at 1000 Hz.*write "3 ms"'),
+        (CHAIN, zw.Wall(100), {"delay": 3}, 'got 3 s, 3000 at 1 kHz.*write "3 ms"'),
         (CHAIN, zw.Wall(100), {"points": 1}, "points"),
         *(
             (CHAIN, zw.Wall(100), {"torque_held_up_to": force}, "largest force")

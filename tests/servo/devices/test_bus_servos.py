@@ -76,7 +76,7 @@ def test_the_watchdog_of_a_dynamixel_begins_with_the_first_torque():
         during = other.table[98]
         device.close()
     assert (before, during) == (0, 3)
-    assert "0.06 s" in device.on_silence
+    assert "60 ms" in device.on_silence
 
 
 def test_a_dynamixel_whose_watchdog_has_expired_is_served_again():

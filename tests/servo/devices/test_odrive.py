@@ -182,4 +182,4 @@ def test_what_it_says_of_itself():
     connection = ODrive(port="/dev/ttyACM0", watchdog=0.1)
     assert "ODrive axis 0 at /dev/ttyACM0" in connection.describe()
     assert "only an emulator" in connection.describe()
-    assert "0.1 s" in connection.on_silence
+    assert "100 ms" in connection.on_silence

@@ -184,10 +184,7 @@ class EachDevice(Documented):
         yield ""
         yield from self._what_limits()
         yield from self._taken_as_nothing()
-        yield (
-            "of each device with everything in its ranges, by the closed forms; zwidth check of one says the "
-            "rest"
-        )
+        yield "each with every value in its ranges, by the closed forms; zwidth check of one says the rest"
 
     def csv(self) -> str:
         """The table, units in the heads, for a spreadsheet."""

@@ -18,6 +18,7 @@ from zwidth.model.device.catalogue import PROPERTIES
 from zwidth.model.specification.environments import option_keys
 from zwidth.model.specification.table import quoted
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -91,9 +92,9 @@ def _has_no_wall(arguments: argparse.Namespace) -> bool:
 
 def _announce(seconds: float) -> None:
     print_message(
-        f"this may take up to about {seconds:.0f} s: what the law remembers, how far the hand goes in a "
-        'sample and how deep make a large grid. "--effort 5" ends it after about 5 s with what was found by '
-        "then; a slower hand, --speed, makes the grid smaller"
+        f"this may take up to about {shown(seconds, 's', 2)}: the law's memory, and how fast and deep the "
+        'hand goes, make a large grid. "--effort 5" ends it after about 5 s with what was found by then; a '
+        "slower hand, --speed, makes the grid smaller"
     )
 
 

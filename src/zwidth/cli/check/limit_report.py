@@ -82,7 +82,7 @@ def _claim(bracket: Bracket) -> str:
         return f"{name}: {passive} is proved passive; no value was found at which a hand gains."
     if bracket.proved_passive is None:
         return f"{name}: {active} is active; no value was found that is proved passive."
-    apart = f"{100 * bracket.relative_width:.2g}{GLUE}% apart"
+    apart = f"{shown(bracket.relative_width, '%', 2)} apart".replace(" ", GLUE, 1)
     return f"{name}: {passive} is proved passive, {active} is active, {apart}."
 
 

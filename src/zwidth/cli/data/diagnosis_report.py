@@ -51,7 +51,7 @@ def _headline(found: Diagnosis | PairDiagnosis) -> Padding:
     if found.cause is None:
         badge = "NO VIBRATION" if found.seen is None else "CANNOT TELL"
         return headline(badge, "yellow", found.claim)
-    sure = f"{100 * min(found.confidence, 0.99):.0f} % sure"
+    sure = f"{shown(min(found.confidence, 0.99), '%', 2)} sure"
     energy = "" if found.energy_per_cycle is None else f", {_energy(found.energy_per_cycle)}"
     return headline(found.cause, "red", f"{found.claim} ({sure}{energy})")
 
@@ -102,7 +102,7 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
         _law_as_stated(change) if found.seen.stated is not None else _law_as_found(found.seen.law, change)
     )
     if float(change.device.exact("delay")):
-        words += ["--delay", f"{1000 * float(change.device.exact('delay')):.6g} ms"]
+        words += ["--delay", shown(change.device.exact("delay"), "s", 6)]
     return typed(*words)
 
 
@@ -146,4 +146,4 @@ def _supposed(found: Diagnosis | PairDiagnosis) -> Iterator[str]:
         if two
         else "one degree of freedom; the hand is passive"
     )
-    yield "the confidence is that of simulated faults like those of the docs page"
+    yield "how sure it is, was counted on simulated faults"

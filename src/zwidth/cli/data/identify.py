@@ -24,6 +24,7 @@ from zwidth.cli.options import (
 from zwidth.cli.output import print_found, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
+from zwidth.quantity.text import shown
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 """What a column may hold."""
@@ -163,8 +164,8 @@ def _confidence(typed: str | None) -> float:
     number = float(parse_number(bare, "1", "confidence")) / (100 if bare != typed.strip() else 1)
     if not 0 < number <= MOST_CONFIDENCE:
         raise InputError(
-            f"--confidence must be > 0 and ≤ {100 * MOST_CONFIDENCE:.4f}%, got {quoted(typed)}: it is how "
-            "often the stated intervals hold the truth; 99% is usual"
+            f"--confidence must be > 0 and ≤ {shown(MOST_CONFIDENCE, '%', 6)}, got {quoted(typed)}: it "
+            "is how often the stated intervals hold the truth; 99% is usual"
         )
     return number
 

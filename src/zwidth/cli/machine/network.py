@@ -18,6 +18,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 from zwidth.showing import Part
 
 if TYPE_CHECKING:
@@ -135,7 +136,8 @@ class _Watch:
         if (k + 1) % self._next:
             return
         seen = (f"{line}: {link.report().brief}" for line, link in self._peer.links.items())
-        print(f"{self._name} at {(k + 1) * self._peer.period:.3g} s, {'; '.join(seen)}", file=sys.stderr)
+        at = shown((k + 1) * self._peer.period, "s", 3)
+        print(f"{self._name} at {at}, {'; '.join(seen)}", file=sys.stderr)
 
 
 def _all(plan: Plan, file: str, typed: str, as_json: bool) -> int:

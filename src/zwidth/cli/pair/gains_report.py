@@ -13,6 +13,7 @@ from zwidth.data.gains import ArmGains, Controllers, GainsVerdict, HeldJoints, P
 from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.in_short import pair_in_short
 from zwidth.passivity.scope import TOLD
+from zwidth.quantity.text import shown
 from zwidth.showing import Table, typed
 
 
@@ -51,7 +52,7 @@ def print_held(found: HeldJoints, better: PassiveGains | None = None) -> None:
         out.print(claimed(found.outcome, found.claim))
         section(out, "joint by joint", [_set(part) for part in parts if isinstance(part, Table)])
         if better is not None:
-            share = f"{float(100 * better.share):g} % of b"
+            share = f"{shown(better.share, '%', 6)} of b"
             section(out, f"written, each proved with {share}", [_set(_written(better))])
         section(out, "assumes", items(found.notes, "dim"))
 
@@ -84,7 +85,7 @@ def print_cartesian(controllers: Controllers, path: str) -> None:
             section(out, "of the file", items(controllers.notes, "dim"))
         one = controllers.cartesian[0]
         rate = one.rate or controllers.rate
-        often = f' --rate "{float(rate):g} Hz"' if rate is not None else ""
+        often = f' --rate "{shown(rate, "Hz", 6)}"' if rate is not None else ""
         ask = f"zwidth workspace ARM.urdf --pose --wall {typed(path)}{often}"
         lines = [f"{ask} --postures 20000{'' if one.of_task else ' -o passive.yaml'}"]
         if one.nullspace:

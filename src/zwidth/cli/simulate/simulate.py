@@ -129,7 +129,7 @@ def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> tu
         duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
     if duration is None:
         duration = _USUAL
-        remarks.append(f"{_USUAL:g} s of it, since no --duration is given.")
+        remarks.append(f"{shown(_USUAL, 's')} of it, since no --duration is given.")
     trace = with_bar(simulated, "samples")(
         loop.device, environment, touch.operator, duration, **touch.options
     )

@@ -63,7 +63,7 @@ def _table(entry: Entry, in_full: bool) -> Table:
     for key, datum in entry.values.items():
         name = in_words(entry.key(key))
         if datum.value is not None:
-            grid.add_row("", name, Text(shown(datum.value, datum.unit, 6)), Text(datum.source))
+            grid.add_row("", name, Text(shown(datum.value, datum.unit, 7)), Text(datum.source))
         elif in_full:
             grid.add_row("", name, Text("unknown", style="yellow"), Text("no source found"))
         elif key not in entry.ranges:

@@ -12,7 +12,7 @@ import xarray as xr
 from zwidth.passivity.scope import TOLD
 from zwidth.passivity.stability.characteristic import Outcome as Rests
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.quantity.text import in_words, shown
+from zwidth.quantity.text import from_to, in_words, shown
 from zwidth.showing import Lines, Part, Table
 
 
@@ -63,8 +63,8 @@ def _ranges(found: xr.Dataset, where: Any) -> Iterator[str]:
         others = tuple(j for j in range(where.ndim) if j != k)
         values = found[name].values[where.any(axis=others)]
         unit = found[name].attrs["units"]
-        ends = [shown(float(end), unit, 4) for end in (values.min(), values.max())]
-        yield ends[0] if ends[0] == ends[1] else " to ".join(ends)
+        low, high = float(values.min()), float(values.max())
+        yield shown(low, unit) if low == high else from_to(low, high, unit)
 
 
 def _numbers(found: xr.Dataset) -> Iterator[tuple[str, ...]]:

@@ -218,5 +218,5 @@ def _written(better: BorneImpedance) -> str:
     units = "N/m" if better.size == len(better.stiffness) // 2 else "N/m, N·m/rad"
     return (
         f"K = {k} {units}; ζ = {zeta}: the condition holds at all of {better.found.tried} postures with "
-        f"{float(100 * better.share):g} % of the joints' damping; between them nothing is proved"
+        f"{shown(better.share, '%', 6)} of the joints' damping; between them nothing is proved"
     )

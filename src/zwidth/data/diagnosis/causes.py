@@ -136,7 +136,7 @@ _SPEAKS, _MUCH_MORE = 0.05, 2.0
 
 
 def _share(seen: Evidence, term: str) -> str:
-    return f"{100 * _given(seen, term):.0f} % of the energy that the law gives in a cycle"
+    return f"{shown(_given(seen, term), '%', 2)} of the energy that the law gives in a cycle"
 
 
 def _sampling(seen: Evidence) -> Iterator[str]:
@@ -167,7 +167,7 @@ def _moves(seen: Evidence) -> str:
     """What the motion itself says of the force behind a command."""
     assert seen.moves_as is not None
     size, angle = abs(seen.moves_as), float(np.degrees(np.angle(seen.moves_as)))
-    where = f"{abs(angle):.0f} deg {'behind' if angle < 0 else 'before'} it"
+    where = f"{abs(angle):.0f}° {'behind' if angle < 0 else 'before'} it"
     return f"to move so, the device takes {size:.2g} times the commanded force, {where}"
 
 
@@ -204,14 +204,15 @@ def _drive(seen: Evidence) -> Iterator[str]:
         f"beside the command the motor gives B = {shown(d.damping, seen.unit('virtual_damping'), 3)} times "
         f"the speed of {shown(d.damping_lag, 's', 3)} ago"
     )
-    yield f"that leaves {100 * d.by_damper:.2g} % of its force unexplained, a delay {100 * d.by_delay:.2g} %"
+    damper, delay = shown(d.by_damper, "%", 2), shown(d.by_delay, "%", 2)
+    yield f"that leaves {damper} of its force unexplained, a delay {delay}"
 
 
 def _drive_unseen(seen: Evidence) -> Iterator[str]:
     if seen.by_inside is not None:
         yield (
             "the motor's force is that of a spring and of an old speed, which leaves "
-            f"{100 * seen.by_inside:.2g} % of it unexplained"
+            f"{shown(seen.by_inside, '%', 2)} of it unexplained"
         )
     else:
         yield _moves(seen)
@@ -221,9 +222,9 @@ def _drive_unseen(seen: Evidence) -> Iterator[str]:
 def _limit_unseen(seen: Evidence) -> Iterator[str]:
     if seen.recorded == "motor":
         yield (
-            f"the motor's force changes at one rate for {100 * (seen.ramps or 0):.0f} % of the time, a sine "
-            f"37 %; its third harmonic is {seen.force_bend.real:.2f} of the first: a triangle has 0.11, a "
-            "force that is cut off less than 0"
+            f"the motor's force changes at one rate for {shown(seen.ramps or 0, '%', 2)} of the "
+            f"time, a sine 37 %; its third harmonic is {seen.force_bend.real:.2f} of the first: a triangle "
+            "has 0.11, a force that is cut off less than 0"
         )
     else:
         yield _moves(seen)
@@ -246,7 +247,7 @@ def _weakening(seen: Evidence) -> Iterator[str]:
             f"{shown(seen.lost, 'J', 2)}"
         )
     if seen.standing > _STICKS:
-        yield f"it stands still for {100 * seen.standing:.0f} % of the time, a sine does for 6 %"
+        yield f"it stands still for {shown(seen.standing, '%', 2)} of the time, a sine does for 6 %"
 
 
 def _limit(seen: Evidence) -> Iterator[str]:
@@ -256,7 +257,7 @@ def _limit(seen: Evidence) -> Iterator[str]:
     d = seen.drive
     yield (
         f"the motor's force changes by no more than {shown(d.rate, _force(seen) + '/s', 3)}, which leaves "
-        f"{100 * d.by_rate:.2g} % of it unexplained, a delay {100 * d.by_delay:.2g} %"
+        f"{shown(d.by_rate, '%', 2)} of it unexplained, a delay {shown(d.by_delay, '%', 2)}"
     )
     yield f"coming late so gives {_share(seen, 'actuator limit')}"
 

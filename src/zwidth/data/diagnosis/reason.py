@@ -220,8 +220,8 @@ def doubt(cause: str, seen: Evidence) -> str | None:
     vibration = seen.vibration
     if (aimed := seen.aimed) is not None and aimed > _MOVES:
         return (
-            f"a stretch in which the target stands still: in this one it moves at the same "
-            f"{shown(vibration.frequency, 'Hz', 3)}, {100 * aimed:.3g} % as far, and the motion is commanded"
+            "a stretch in which the target stands still: here it moves at the same "
+            f"{shown(vibration.frequency, 'Hz', 3)}, {shown(aimed, '%', 3)} as far: the motion is commanded"
         )
     if vibration.of_force:
         return "every sample of the loop: the force jumps to and fro, and the motion in these rows does not"
@@ -240,11 +240,11 @@ def doubt(cause: str, seen: Evidence) -> str | None:
     if not 1 / _ANOTHER_UNIT < size < _ANOTHER_UNIT:
         return f"units and mass once more: to move so takes {size:.2g} times the force in the file"
     if _may_be_commanded(cause, seen):
-        left = 100 * (1.0 if seen.law is None else min(1.0, seen.law.unexplained))
+        left = 1.0 if seen.law is None else min(1.0, seen.law.unexplained)
         return (
             "the law that was programmed beside the file, and the position that it aims at where that moves "
-            f"(target_position): a spring and a damper about one place leave {left:.2g} % of the force "
-            "unexplained, as in a motion that is commanded"
+            f"(target_position): a spring and a damper about one place leave {shown(left, '%', 2)} of the "
+            "force unexplained, as in a motion that is commanded"
         )
     mains = min(_MAINS, key=lambda at: abs(at - vibration.frequency))
     if cause == "structural resonance" and abs(mains - vibration.frequency) < _NEAR:

@@ -24,6 +24,7 @@ from zwidth.data.logs.read import log_of, opened
 from zwidth.data.logs.survey import Still
 from zwidth.data.logs.table import LEFT_OUT, Block, Motion, Table, listed, whole_runs
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -249,7 +250,7 @@ def _recording(
             looked += '; sheet="0" and so on chooses an episode'
         supposed = (looked, *supposed)
     own = [None if each is None else _longest(each) for each in (commanded, applied)]
-    rows = [f"{block.time.size} rows from {block.time[0]:.4g} s" for block in own if block is not None]
+    rows = [f"{block.time.size} rows from {shown(block.time[0], 's')}" for block in own if block is not None]
     if len(set(rows)) > 1:
         raise InputError(_APART.format(*rows))
     asked, given = (None if block is None else block.actuator_force for block in own)

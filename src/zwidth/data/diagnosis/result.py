@@ -18,7 +18,7 @@ from zwidth.data.diagnosis.vibration import nothing
 from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.quantity.answered import answered, answers, data_of
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import in_a_table, shown
 from zwidth.showing import Part, Shown, Table
 from zwidth.writing import check_target, writing_whole
 
@@ -87,7 +87,7 @@ class Answer(Shown, Generic[Changed, Seen, Recorded]):
         """The claim, what speaks for it, what to do."""
         yield self.claim
         if self.cause is not None:
-            yield f"{self.cause}, {100 * self.confidence:.0f} % sure"
+            yield f"{self.cause}, {shown(self.confidence, '%', 2)} sure"
         yield from self.evidence
         yield from self.next_steps
         yield Table(rows=[*self.rows()])
@@ -225,7 +225,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
         v = self.seen.vibration
         length = "rad" if self.seen.rotary else "m"
         yield "frequency", f"{shown(v.frequency, 'Hz', 4)} ± {shown(v.frequency_spread, 'Hz', 2)}"
-        counts = f", {self.seen.counts:.3g} counts" if self.seen.resolution else ""
+        counts = f", {in_a_table(self.seen.counts, 3)} counts" if self.seen.resolution else ""
         yield "end to end", f"{shown(v.swing, length, 3)}{counts}"
         yield from rows_of_energy(self.seen.energy, self.seen.supplied, self.seen.lost)
         if (law := self.seen.law) is not None:
@@ -233,7 +233,7 @@ class Diagnosis(Answer[Change, Evidence, Recording]):
             if law.damping:
                 damping = shown(law.damping, self.seen.unit("virtual_damping"), 3)
                 yield "virtual damping", f"{damping}, window {law.window}"
-            yield "force explained", f"{100 * (1 - law.unexplained):.4g} %"
+            yield "force explained", shown(1 - law.unexplained, "%")
         yield from rows_of_likely(self.likely)
 
     def _measured(self, seen: Evidence) -> dict[str, Any]:

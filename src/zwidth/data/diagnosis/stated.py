@@ -90,7 +90,7 @@ class Stated:
         force = "the command" if self.of_command else "the motor's force"
         if self.holds and self.of_command:
             late = f", {shown(self.lag, 's', 3)} after its row" if self.lag else ""
-            yield f"the command is that of the law as stated{late}, all but {100 * self.unexplained:.2g} %"
+            yield f"the command is that of the law as stated{late}, all but {shown(self.unexplained, '%', 2)}"
         elif self.holds:
             yield "the command is computed from the law as stated: the file has the motor's force alone"
         elif self.unexplained < FOLLOWED:
@@ -100,7 +100,7 @@ class Stated:
             )
         else:
             yield (
-                f"{force} is not that of the law as stated, which leaves {100 * self.unexplained:.2g} % "
+                f"{force} is not that of the law as stated, which leaves {shown(self.unexplained, '%', 2)} "
                 "of it unexplained; the rest is of the force in the file"
             )
 

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from zwidth.quantity.text import shown
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -133,8 +135,8 @@ def nothing(time: Array) -> str:
     seconds = float(time[-1] - time[0])
     least = max(SLOWEST, FEWEST_CYCLES / seconds) if seconds else SLOWEST
     return (
-        f"Nothing goes to and fro {FEWEST_CYCLES} times or more in the longest stretch without a gap, "
-        f"{seconds:.2g} s: a vibration would have to be faster than {least:.2g} Hz to be seen in it."
+        f"Nothing goes to and fro {FEWEST_CYCLES} times in the longest stretch without a gap, "
+        f"{shown(seconds, 's', 2)}: only a vibration faster than {shown(least, 'Hz', 2)} would be seen."
     )
 
 

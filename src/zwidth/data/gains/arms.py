@@ -115,7 +115,7 @@ class ArmGains(Shown):
         arms = plant_of(self.joints, known, plant)
         often = known.rate.value if rate is None else parse_number(rate, "Hz", "rate")
         if often.fraction <= 0:
-            raise InputError(f"rate must be > 0, got {float(often):g} Hz: references are sent that often")
+            raise InputError(f"rate must be > 0, got {shown(often, 'Hz', 6)}: references are sent that often")
         usual = known.link_delay
         link = usual.value if delay is None else delay
         there, back = link if isinstance(link, (tuple, list)) and len(link) == 2 else (link, link)

@@ -13,6 +13,7 @@ from zwidth.data.gains.plant import family, servo
 from zwidth.errors import InputError
 from zwidth.model.rendering.friction_compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import shown
 
 # LeRobot with Damiao motors (openarm_follower): lists position_kp, position_kd.
 #
@@ -96,8 +97,8 @@ def read_feetech(tables: Sequence[GainTable], supply_voltage: Fraction | None, b
     joints = []
     notes = [
         *_FEETECH_NOTES,
-        f"K = {float(motor.stiffness(Fraction(1), supply_voltage)):.4g} N·m/rad for each count of P at "
-        f"{float(supply_voltage):g} V, and in proportion to the voltage, which sags under load "
+        f"K = {shown(motor.stiffness(Fraction(1), supply_voltage), 'N*m/rad')} for each count of P at "
+        f"{shown(supply_voltage, 'V', 6)}, and in proportion to the voltage, which sags under load "
         f"({motor.source})",
     ]
     places = [place for table in tables for place in _servos(table)]

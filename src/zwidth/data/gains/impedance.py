@@ -87,7 +87,7 @@ class BorneImpedance(Saved):
 
     def _head(self) -> Iterator[str]:
         asked = self.found.question
-        count, part = self.found.tried, f"{float(100 * self.share):g} %"
+        count, part = self.found.tried, shown(self.share, "%", 6)
         yield (
             f"An impedance for {asked.arm.name}: the condition of passivity holds at all of {count} postures "
             "over its joint ranges, and between them nothing is proved. Computed by zwidth, tried on no "
@@ -159,7 +159,7 @@ def borne_impedance(
             return BorneImpedance(asked, tuple(k), tuple(factors), found, part)
         times, whole = times * _LESS, whole * _LESS
     raise InputError(
-        f"no stiffness of this kind is borne at every posture by {float(100 * part):g} % of the joints' "
+        f"no stiffness of this kind is borne at every posture by {shown(part, '%', 6)} of the joints' "
         "damping: measure it, --joint-damping, or hold joints where they need not move, --hold"
     )
 

@@ -114,7 +114,7 @@ class PassiveGains(Saved):
     def _head(self) -> Iterator[str]:
         yield (
             "Gains of joints, each proved passive by itself: no motion of a hand that moves the joint takes "
-            f"energy out, as long as it damps at least {float(100 * self.share):g} % of what was given. "
+            f"energy out, as long as it damps at least {shown(self.share, '%', 6)} of what was given. "
             "Computed by zwidth, tried on no machine."
         )
         yield "For ROS: to be loaded after your own parameter file; what is not here stays as it is there."

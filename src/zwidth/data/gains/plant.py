@@ -34,6 +34,7 @@ from zwidth.model.specification.table import quoted
 from zwidth.model.specification.values import joint_transmissions
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 KEYS = ("damping", "coulomb_friction", "resolution")
@@ -236,10 +237,8 @@ def servo(voltage: Fraction) -> Servo:
     for one in sorted(found, key=lambda one: one.highest_voltage):
         if 0 < voltage <= one.highest_voltage:
             return one
-    raise InputError(
-        f"--supply-voltage must be > 0 and at most {float(found[-1].highest_voltage):g} V, what an STS3215 "
-        f"is made for, got {float(voltage):g} V"
-    )
+    most, given = shown(max(one.highest_voltage for one in found), "V", 6), shown(voltage, "V", 6)
+    raise InputError(f"--supply-voltage must be > 0 and ≤ {most}, as an STS3215 is made for; got {given}")
 
 
 def _plant(name: str, table: Mapping[str, Any]) -> PublishedPlant:

@@ -322,7 +322,7 @@ def _share(joint: JointVerdict) -> str:
     """Of the compensation of friction, in percent."""
     if not joint.model.is_compensated:
         return ""
-    return _NONE if joint.compensation is None else f"{100 * joint.compensation:.0f} %"
+    return _NONE if joint.compensation is None else shown(joint.compensation, "%", 3)
 
 
 def _stiffness(joint: CoupledJoint) -> str:

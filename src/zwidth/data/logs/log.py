@@ -218,8 +218,8 @@ class Log(Shown):
 def _same(first: Log, log: Log) -> None:
     if not isclose(log.sample_period, first.sample_period, rel_tol=SAME):
         raise InputError(
-            f"{first.source} has a sample period of {first.sample_period:g} s and {log.source} of "
-            f"{log.sample_period:g} s: the limit 2b/T is another for each; identify them one by one"
+            f"{first.source} has a sample period of {shown(first.sample_period, 's', 6)} and {log.source} of "
+            f"{shown(log.sample_period, 's', 6)}, so 2b/T differs: identify them one by one"
         )
     for what in ("motion", "resolution", "channels"):
         one, other = getattr(first, what), getattr(log, what)

@@ -21,6 +21,7 @@ import pyarrow.parquet as pq
 
 from zwidth.data.logs.table import LEFT_OUT, MOST_COLUMNS, PIECE, Finding, Table, Values, listed, readable
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 from zwidth.reading import check_parquet
 
 _EPISODES = {"episode_index", "frame_index"}
@@ -227,8 +228,8 @@ def _of_episodes(path: Path, files: list[Path], chosen: str | None) -> Iterator[
     periods = time[late].astype(float) / frame[late]
     if periods.size and np.ptp(periods) < 1e-4 * abs(periods[0]):
         text = (
-            f'"timestamp" is frame_index / {1 / np.median(periods):.4g} Hz and no clock: when a frame was '
-            "taken, and whether one is missing, is not in the file"
+            f'"timestamp" is frame_index / {shown(1 / np.median(periods), "Hz")} and no clock: the file does '
+            "not say when a frame was taken, or whether one is missing"
         )
         yield Finding(kind="no clock", text=text)
     every = np.unique(episode)

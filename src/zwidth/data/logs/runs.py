@@ -13,6 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from zwidth.data.logs.rows import Rows, joined
 from zwidth.errors import InputError
+from zwidth.quantity.text import from_to, shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -108,8 +109,8 @@ class Cutter:
         self._length = 0
         if self._scraps > MOST_SCRAPS:
             raise InputError(
-                f"{self.source}: the sample period is no longer {self.clock.period:.6g} s around t = "
-                f"{stamp:.6g} s; a log needs samples at a fixed rate; cut the file where the rate changes"
+                f"{self.source}: the sample period is no longer {shown(self.clock.period, 's', 6)} around t "
+                f"= {shown(stamp, 's', 6)}, and a log has one; cut the file where the rate changes"
             )
         if kind == GAP:
             gap = stamp - self._last
@@ -119,8 +120,8 @@ class Cutter:
         elif kind == BACK:
             if self._last - stamp < 0.5 * (self._last - self._start):
                 raise InputError(
-                    f"{self.source}: time goes back from {self._last:.9g} s to {stamp:.9g} s, and not to the "
-                    "start of another recording; sort the rows or cut the file there"
+                    f"{self.source}: time goes back from {shown(self._last, 's', 9)} to "
+                    f"{shown(stamp, 's', 9)}, not to another start; sort the rows or cut the file there"
                 )
             self.tally["restarts"] += 1
         self._run += 1
@@ -189,8 +190,8 @@ def clock_of(time: Array, source: str) -> Clock:
     group = _longest_group(steps, period)
     if period <= 0 or group > width // 4 or _wanders(time, period, width):
         raise InputError(
-            f"{source}: the stamps have no common period; the intervals lie between {steps.min():.3g} and "
-            f"{steps.max():.3g} s; a log needs samples at a fixed rate"
+            f"{source}: the stamps have no common period, they are "
+            f"{from_to(steps.min(), steps.max(), 's', 3)} apart; a log needs samples at a fixed rate"
         )
     return Clock(period=period, group=group)
 

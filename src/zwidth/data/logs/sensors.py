@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from zwidth.quantity.text import shown
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -258,7 +260,7 @@ def beyond(force: Array, stops: tuple[float, float]) -> NDArray[np.bool_]:
 
 def at_ends(stops: tuple[float, float], unit: str) -> str:
     """The finite ones in a sentence: "-10 N and at 10 N"; nothing where there is none."""
-    return " and at ".join(f"{end:.4g} {unit}" for end in stops if np.isfinite(end))
+    return " and at ".join(shown(end, unit) for end in stops if np.isfinite(end))
 
 
 def _piles_up(counts: NDArray[np.int64], k: int) -> bool:

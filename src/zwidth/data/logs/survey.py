@@ -142,8 +142,8 @@ def _refuse_other_rate(time: Array, period: float, source: str) -> None:
     other = np.flatnonzero(np.abs(means - period) > 0.01 * period)
     if other.size:
         raise InputError(
-            f"{source}: the sample period changes: roughly {period:.6g} s, but {means[other[0]]:.6g} s after "
-            f"t = {time[other[0] * _LONG]:.6g} s; cut the file where it changes"
+            f"{source}: at t = {shown(time[other[0] * _LONG], 's', 6)} the sample period changes from "
+            f"{shown(period, 's', 6)} to {shown(means[other[0]], 's', 6)}; cut the file there"
         )
 
 
@@ -160,7 +160,7 @@ _COUNTED = {
     ),
     "gaps": (
         "gap",
-        "{gaps} gaps, about {lost} samples, the longest {longest:.4g} s; a new run begins after each",
+        "{gaps} gaps, about {lost} samples, the longest {longest}; a new run begins after each",
         "lost",
     ),
     "restarts": (
@@ -200,7 +200,7 @@ def refuse_survey(survey: Survey, tally: Counter[str], source: str) -> None:
     if survey.runs > 16 and survey.samples < 8 * survey.runs:
         raise InputError(
             f"{source}: {survey.samples} samples in {survey.runs} runs: the stamps have no common period "
-            f"(intervals around {survey.period:.4g} s); a log needs samples at a fixed rate"
+            f"(intervals around {shown(survey.period, 's')}); a log needs samples at a fixed rate"
         )
     if survey.jumps.low == survey.jumps.high:
         raise Still(
@@ -232,13 +232,13 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
     off = mean / stated - 1
     if abs(off) > _LOT:
         raise InputError(
-            f"{source}: the stamps are {mean:.6g} s apart, stated are {stated:.6g} s; check the rate and the "
-            "unit of the time column"
+            f"{source}: the stamps are {shown(mean, 's', 6)} apart, stated are {shown(stated, 's', 6)}; "
+            "check the rate and the unit of the time column"
         )
     if abs(off) > _LITTLE + uncertainty / stated:
         text = (
-            f"sample period {stated:.9g} s as stated; the stamps are {mean:.9g} s apart, {100 * off:+.2g} %: "
-            "one of the two clocks is off"
+            f"sample period {shown(stated, 's', 9)} as stated; the stamps are {shown(mean, 's', 9)} apart, "
+            f"{shown(abs(off), '%', 2)} {'more' if off > 0 else 'less'}: one of the two clocks is off"
         )
         return stated, Finding(kind="stated period", text=text)
     text = f"sample period {shown(stated, 's', 9)}, stated and by the stamps"
@@ -246,7 +246,7 @@ def period_found(survey: Survey, stated: float | None, timed: bool, source: str)
 
 
 def clock_findings(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Finding]:
-    numbers = {**tally, "longest": cutter.longest_gap}
+    numbers = {**tally, "longest": shown(cutter.longest_gap, "s")}
     for what, (kind, text, samples) in _COUNTED.items():
         if tally[what]:
             yield Finding(kind=kind, text=text.format_map(numbers), samples=tally[samples] if samples else 0)
@@ -261,8 +261,8 @@ def clock_findings(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Itera
         yield Finding(kind="grouped stamps", text=text)
     elif survey.deviation > 1e-3 * survey.period:
         text = (
-            f"intervals between stamps vary by {survey.deviation:.3g} s (standard deviation), from "
-            f"{survey.intervals.shortest:.6g} to {survey.intervals.longest:.6g} s; {supposed}"
+            f"intervals between stamps are {shown(survey.intervals.shortest, 's', 6)} to "
+            f"{shown(survey.intervals.longest, 's', 6)}, σ {shown(survey.deviation, 's', 3)}; {supposed}"
         )
         yield Finding(kind="jitter", text=text)
 
@@ -272,8 +272,8 @@ def position_findings(survey: Survey, wrap: float, unit: str) -> Iterator[Findin
     grid, found, stated = survey.grid, survey.found, survey.stated
     if stated is not None and grid is None:
         text = (
-            f"the positions do not lie on the stated step of {stated:.6g} {unit}: filtered or interpolated "
-            "before they were logged; they are left as they are"
+            f"the positions do not lie on the stated step of {shown(stated, unit, 6)}: filtered or "
+            "interpolated before they were logged; they are left as they are"
         )
         yield Finding(kind="no step", text=text)
     elif grid is None:
@@ -293,13 +293,13 @@ def position_findings(survey: Survey, wrap: float, unit: str) -> Iterator[Findin
         )
         yield Finding(kind="resolution", text=f"resolution {shown(grid.step, unit, 6)} {how}")
     if grid is not None and grid.offset:
-        text = f"the positions are whole steps plus {grid.offset:.4g} {unit}, which is taken off"
+        text = f"the positions are whole steps plus {shown(grid.offset, unit)}, which is taken off"
         yield Finding(kind="offset", text=text)
     if survey.off_grid:
         text = f"{survey.off_grid} positions lie between the steps"
         yield Finding(kind="between steps", text=text, samples=survey.off_grid)
     if wrap:
-        text = f"the position overflows at {wrap:.6g} {unit}; it is continued beyond"
+        text = f"the position overflows at {shown(wrap, unit, 6)}; it is continued beyond"
         yield Finding(kind="overflow", text=text)
 
 
@@ -313,10 +313,9 @@ def force_findings(survey: Survey, unit: str) -> Iterator[Finding]:
     stops, samples = survey.stops.found()
     ends = at_ends(stops, unit)
     if ends:
-        share = 100 * samples / survey.samples
         text = (
-            f"the hand's force stays at {ends} in {samples} samples, {share:.2g} %: the sensor is at the end "
-            "of its range, and larger forces are not known; strokes, or pieces of a shaken finger, with such "
-            "samples are left out"
+            f"the hand's force stays at {ends} in {samples} samples, "
+            f"{shown(samples / survey.samples, '%', 2)}: the sensor is at the end of its range, and larger "
+            "forces are not known; strokes, or pieces of a shaken finger, with such samples are left out"
         )
         yield Finding(kind="saturated", text=text, samples=samples)

@@ -15,7 +15,7 @@ from zwidth.data.tissue.model import Model, Record
 from zwidth.errors import InputError
 from zwidth.model.environment.modes import decaying, samples
 from zwidth.native.compiled import Array, compiled
-from zwidth.quantity.text import quantity_unit, shown
+from zwidth.quantity.text import from_to, quantity_unit, shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,8 +37,8 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
     """Why a stiffness at once, or a depth, is hardly that of a tissue."""
     if not SOFTEST <= stiffness <= STIFFEST:
         yield (
-            f"a stiffness at once of {stiffness:.3g} N/m is hardly that of soft tissue under a probe, "
-            f"{SOFTEST:g} to {STIFFEST:g} N/m: most likely a unit is off by 1000, mm for m or mN for N"
+            f"a stiffness at once of {shown(stiffness, 'N/m', 3)} is hardly soft tissue under a probe, "
+            f"{from_to(SOFTEST, STIFFEST, 'N/m')}: most likely a unit is off by 1000"
         )
     if depth > DEEPEST or 0 < depth < SHALLOWEST:
         yield (
@@ -91,7 +91,7 @@ def findings(
         )
         yield Finding(kind="saturated", text=text, samples=left_out)
     if record.begins:
-        places = ", ".join(f"{record.time[b]:.4g} s" for b in record.begins[:3])
+        places = ", ".join(shown(record.time[b], "s") for b in record.begins[:3])
         text = (
             f"{len(record.begins)} holes, before t = {places}{' …' if len(record.begins) > 3 else ''}: what "
             "the branches held after each was fitted"
@@ -99,12 +99,12 @@ def findings(
         yield Finding(kind="hole", text=text)
     if faults.drift:
         text = (
-            f"the zero drifts: from {zero[0]:.3g} {unit} at the start by {zero[-1]:.3g} {unit}; "
-            "fitted besides"
+            f"the zero drifts: from {shown(zero[0], unit, 3)} at the start by "
+            f"{shown(zero[-1], unit, 3)}; fitted besides"
         )
         yield Finding(kind="drift", text=text)
     elif faults.offset:
-        text = f"the zero is off by {zero[0]:.3g} {unit}; fitted besides"
+        text = f"the zero is off by {shown(zero[0], unit, 3)}; fitted besides"
         yield Finding(kind="offset", text=text)
     if faults.late:
         yield _lateness(faults.late, late)
@@ -113,7 +113,7 @@ def findings(
 def _lateness(kind: str, late: float) -> Finding:
     if late < 0:
         text = (
-            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model has "
+            f"the force looks {shown(-late, 's', 3)} early: the position is recorded late, or the model has "
             "too few elements; fitted as a delay"
         )
         return Finding(kind="force early", text=text)
@@ -208,8 +208,9 @@ def hole_places(time: Array, position: Array, source: str = "the record") -> tup
     holes = holes[(holes > 1) & (holes < time.size - 1)]
     if holes.size > MOST_HOLES:
         raise InputError(
-            f"{source} has {holes.size} holes in time, the first after t = {time[holes[0] - 1]:.6g} s: what "
-            "a tissue holds after each is not known; record without losing samples, or give a part with fewer"
+            f"{source} has {holes.size} holes in time, the first after t = "
+            f"{shown(time[holes[0] - 1], 's', 6)}: what a tissue holds after each is not known; lose no "
+            "samples, or give a part with fewer"
         )
     return tuple(holes.tolist())
 

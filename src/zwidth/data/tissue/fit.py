@@ -27,6 +27,7 @@ from zwidth.errors import InputError
 from zwidth.model.environment.modes import samples
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
@@ -159,8 +160,8 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: RealLi
     begins = hole_places(t, x if response == "force" else f)
     if begins and response == "position":
         raise InputError(
-            f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the force "
-            "changes: how the tissue crept meanwhile is not known; give the part before it or after it"
+            f"the record has a hole in time after t = {shown(t[begins[0] - 1], 's', 6)}, across which the "
+            "force changes: how the tissue crept meanwhile is not known; give the part before it or after it"
         )
     return Record(t, x, f, response, before, begins)
 

@@ -28,6 +28,7 @@ from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 from zwidth.passivity.formulas.hypotheses import nonnegative, number
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -283,7 +284,8 @@ def _times(given: tuple[RealLike, RealLike] | None, period: Exact) -> tuple[Exac
         return Exact(period.fraction / 10), Exact(period.fraction * int(_SLOWEST))
     low, high = (positive("relaxation_times", value, "delay") for value in given)
     if low >= high:
-        raise InputError(f"relaxation_times are (shortest, longest), got {low:g} and {high:g} s")
+        got = f"{shown(low, 's', 6)} and {shown(high, 's', 6)}"
+        raise InputError(f"relaxation_times are (shortest, longest), got {got}")
     return low, high
 
 

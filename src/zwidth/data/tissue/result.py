@@ -186,7 +186,7 @@ class TissueFit(Documented):
         """What a reader should know before trusting the numbers."""
         said = [
             f"{name} is not identifiable from this record: its standard deviation is "
-            + (f"{100 * spread:.0f} % of it" if spread < 100 else "more than a hundred times it")
+            + (f"{shown(spread, '%', 3)} of it" if spread < 100 else "more than a hundred times it")
             for name, spread in self.spreads.items()
             if name != "offset" and spread > LARGEST_SPREAD
         ]

@@ -141,10 +141,10 @@ class Emitted(Result):
     @property
     def numbers(self) -> list[tuple[str, str]]:
         """What the target's numbers are and cost, as (name, text)."""
-        unit = quantity_unit("coulomb_friction", self.device.motion)
         rows = [("numbers", _numbers(self.machine))]
         if self.machine.error is not None:
-            rows.append(("force off by at most", f"{self.machine.error:.4g} {unit}"))
+            off = told_quantity(self.machine.error, "force", self.device.motion, 4)
+            rows.append(("force off by at most", off))
         cost = self.judged.cost(self.device, self.environment)
         if cost is not None:
             rows.append(("stiffness that it costs", told_quantity(cost, "stiffness", self.device.motion, 4)))
@@ -182,7 +182,7 @@ class Emitted(Result):
             actuator,
             f"readings from {low * spoken(unit)[0]:.10g} to {to}; beyond them nothing is claimed",
             *self._beyond_points(),
-            f"a force at each sample, {shown(late, 's')} after its reading (the delay), held to the next",
+            f"a force {shown(late, 's') + ' after' if late else 'at'} each reading, held to the next",
         )
 
     def _beyond_points(self) -> Iterator[str]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from hashlib import sha256
 from math import ceil, floor, inf
 from textwrap import wrap
@@ -33,7 +34,7 @@ from zwidth.passivity.parameter_limits import has_stiffness, max_stiffness
 from zwidth.passivity.transmission import seen_at_motor
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 Decide = Callable[[Device, Environment], Verdict]
 
@@ -98,13 +99,14 @@ class Judged:
     def statement(self) -> str:
         """What the numbers of the machine do to the verdict, in a sentence or two."""
         m = self.machine
-        what, unit = _NUMBERS[m.number], quantity_unit("coulomb_friction", self.verdict.device.motion)
+        what = _NUMBERS[m.number]
+        told = partial(told_quantity, name="force", motion=self.verdict.device.motion, digits=4)
         if self.bounded:
             return f"Force bounding pays for {what} and the converter's steps; what comes before may be off."
         if m.error is None:
             return f"{what} is not in the verdict: {m.reason}."
-        off = f"The force is off by {m.error:.4g} {unit} at most: {m.half_step:.4g} by half a step of the "
-        off += f"converter, {m.rounding or 0.0:.3g} by {what}."
+        parts = f"{told(m.half_step)} by half a step of the converter, {told(m.rounding or 0.0)} by {what}"
+        off = f"The force is off by {told(m.error)} at most: {parts}."
         if not self.counted:
             return f"{off} {self.reason}"
         return f"{off} As much Coulomb friction is set aside for it, and the proof holds with what is left."
@@ -129,13 +131,13 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=machine.reason)
     (friction, most), off = ends(device.coulomb_friction), Fraction(machine.error)
     if friction < off:
-        unit = quantity_unit("coulomb_friction", device.motion)
+        dry = told_quantity(friction, "coulomb_friction", device.motion, 4)
         return Judged(
             machine=machine,
             ideal=ideal,
             verdict=ideal,
             counted=False,
-            reason=f"The device has {float(friction):.4g} {unit} of Coulomb friction to pay for it.",
+            reason=f"The device has {dry} of Coulomb friction to pay for it.",
         )
     if ideal.outcome not in PROVED:
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)

@@ -69,8 +69,8 @@ class PeerReport(Documented):
 
     def report(self) -> Iterable[Part]:
         """The steps, then line by line."""
-        p50, p99, most = (f"{1e3 * t:.2g}" for t in self.lateness)
-        late = f"late by {p50} ms median, {p99} ms in 99 %, {most} ms at most"
+        p50, p99, most = (shown(t, "s", 2) for t in self.lateness)
+        late = f"late by {p50} median, {p99} in 99 %, {most} at most"
         yield f"{self.steps} steps, {self.late} by more than a period too late; {late}"
         rows = [link.row(name) for name, link in self.links.items()]
         yield Table(heads=[LinkReport._HEADS], rows=rows, lefts=1)
@@ -229,7 +229,15 @@ class LinkReport(Documented):
         """Six lines."""
         yield Table(rows=self.rows())
 
-    _HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+    _HEADS: ClassVar = [
+        "line",
+        "sent",
+        "received",
+        "lost",
+        "there and back, 99 %",
+        "energy out",
+        "energy in",
+    ]
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""
@@ -238,13 +246,13 @@ class LinkReport(Documented):
 
     @property
     def _share(self) -> str:
-        return f"{100 * self.lost / max(self.lost + self.received, 1):.2g} %"
+        return shown(self.lost / max(self.lost + self.received, 1), "%", 2)
 
     @property
     def _trips(self) -> str:
         if math.isnan(self.round_trip[0]):
             return "—"
-        return ", ".join(f"{1e3 * t:.3g}" for t in self.round_trip[:2]) + " ms"
+        return ", ".join(shown(t, "s", 3) for t in self.round_trip[:2])
 
     @property
     def brief(self) -> str:

@@ -333,7 +333,7 @@ def _sleep(granted: Granted, root: Path) -> Finding:
             longest = max(longest, int(text))
     if longest < 0:
         return Finding(about, None)
-    seen = f"the deepest takes {longest} µs to end"
+    seen = f"the deepest takes {shown(1e-6 * longest, 's')} to end"
     if "awake cores" in granted:
         return Finding(about, f"{seen}, and is forbidden while the loop runs")
     advice = "sudo chmod o+w /dev/cpu_dma_latency, and the loop keeps the cores awake while it runs"
@@ -351,7 +351,7 @@ def _usb(root: Path) -> Finding:
     ]
     if not ports:
         return Finding(about, "none that holds bytes back by a latency timer")
-    seen = ", ".join(f"{name} holds bytes back for {timer} ms" for name, timer, _ in ports)
+    seen = ", ".join(f"{name} holds bytes back for {shown(1e-3 * timer, 's')}" for name, timer, _ in ports)
     slow = next((path for _, timer, path in ports if timer > 1), None)
     where = "" if slow is None else "/" + str(slow.relative_to(root))
     return Finding(about, seen, f"echo 1 | sudo tee {where}" if slow else None)
@@ -370,7 +370,7 @@ def _virtual(root: Path, before: Moment) -> Finding:
     if share is None:
         return Finding(about, "yes; how much time the host takes is not told")
     advice = "the host runs others in that time: serve on a machine of your own, or pin its virtual cores"
-    seen = f"yes; its host took {100 * share:.2g} % of the time meanwhile, as the kernel counts"
+    seen = f"yes; its host took {shown(share, '%', 2)} of the time meanwhile, as the kernel counts"
     return Finding(about, seen, advice if share > _STOLEN else None)
 
 

@@ -55,7 +55,8 @@ from zwidth.machine.servo.safety import (
 from zwidth.model.pairs import Pair
 from zwidth.passivity.check import check
 from zwidth.passivity.pairs import PairVerdict
-from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.exact import RealLike, ends
+from zwidth.quantity.text import shown
 
 Law = Callable[[float, float], tuple[float, float]]
 """Of both readings, the force of each side."""
@@ -392,9 +393,7 @@ def _check(pair: Pair, connections: tuple[object, object]) -> None:
     if not isinstance(pair, Pair):
         raise InputError(f"a served pair is a zwidth.Pair, got {type(pair).__name__}")
     if pair.own_readings > 1 or pair.drive_rate is not None:
-        rates = ", ".join(
-            f"{float(Exact(1 / d.exact('sample_period'))):g} Hz" for d in (pair.leader, pair.follower)
-        )
+        rates = ", ".join(shown(1 / d.exact("sample_period"), "Hz", 6) for d in (pair.leader, pair.follower))
         raise InputError(
             f"both arms of a served pair are measured and computed at one rate, got {rates} and a drive_rate "
             f"of {pair.drive_rate}: give both the rate of this loop"

@@ -25,6 +25,7 @@ from types import TracebackType
 from typing import Any
 
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown
 
 PRIORITY = 40
@@ -134,7 +135,7 @@ class RealTime:
         if before < 0 or library.prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0):
             return False, "the kernel does not take it"
         self._undo.append(lambda: library.prctl(_PR_SET_TIMERSLACK, before, 0, 0, 0))
-        return True, f"come within 1 ns, before within {before / 1e3:g} µs"
+        return True, f"come within 1 ns, before within {shown(1e-9 * before, 's', 6)}"
 
     def _awake_cores(self) -> tuple[bool, str]:
         try:

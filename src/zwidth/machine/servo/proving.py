@@ -167,8 +167,8 @@ def _three(times: Array) -> tuple[float, float, float]:
 
 
 def _told(times: tuple[float, float, float]) -> str:
-    p50, p99, most = (f"{1e6 * t:.3g}" for t in times)
-    return f"{p50} µs median, {p99} µs in 99 %, {most} µs at most"
+    p50, p99, most = (shown(t, "s", 3) for t in times)
+    return f"{p50} median, {p99} in 99 %, {most} at most"
 
 
 def _rounded_up(seconds: float) -> Fraction:

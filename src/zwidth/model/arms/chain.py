@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms.arm import Arm, Array, Axis, Sites, as_joints, middles
+from zwidth.quantity.text import from_to
 
 _MOST_CELLS = 2_000_000
 """Beyond three joints a grid outgrows the memory."""
@@ -129,7 +130,7 @@ class PlanarChain(Arm):
             self.forward(q),
             self.jacobian(q),
             change,
-            "; ".join(f"q{i + 1} from {a:.4g} to {b:.4g} rad" for i, (a, b) in enumerate(self.joint_range)),
+            "; ".join(f"q{i + 1} from {from_to(*ends, 'rad')}" for i, ends in enumerate(self.joint_range)),
             np.stack([change, np.zeros_like(change)], axis=-1) if self.pose else None,
         )
 

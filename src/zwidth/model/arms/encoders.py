@@ -22,7 +22,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from decimal import ROUND_FLOOR, Context
 from math import inf
 
 import numpy as np
@@ -37,6 +36,7 @@ from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.wall import Wall
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown_at_most
 
 Array = npt.NDArray[np.float64]
 Chain = PlanarChain | DescribedArm
@@ -282,7 +282,6 @@ def forces_of(arm: Arm, given: RealLike | Sequence[RealLike] | None, name: str) 
 
 def in_words(largest: Sequence[float]) -> str:
     """The force, and the moment, rounded down: a claim goes no further than its proof."""
-    down = Context(prec=_DIGITS, rounding=ROUND_FLOOR)
-    units = zip(largest, ("N", "N·m"), strict=False)
-    bounds = [f"{float(down.create_decimal(repr(value))):g} {unit}" for value, unit in units if value < MOST]
+    units = zip(largest, ("N", "N*m"), strict=False)
+    bounds = [shown_at_most(value, unit) for value, unit in units if value < MOST]
     return " and ".join(bounds) or "any"

@@ -23,6 +23,7 @@ import numpy.typing as npt
 
 from zwidth.errors import InputError
 from zwidth.model.arms.arm import Arm, Array, Axis, Sites, as_joints, middles
+from zwidth.quantity.text import from_to, shown
 
 _NEWTON_STEPS = 60
 _REACHED = 1e-12
@@ -166,12 +167,12 @@ class LeggedArm(Arm):
         halves = [(high[k] - low[k]) / (2 * points) for k in (0, 1)]
         axes = (Axis("x", "m", x), Axis("y", "m", y))
         coordinates = list(np.meshgrid(x, y, indexing="ij"))
-        words = f"x from {low[0]:.4g} to {high[0]:.4g} m, y from {low[1]:.4g} to {high[1]:.4g} m"
+        words = f"x from {from_to(low[0], high[0], 'm')}, y from {from_to(low[1], high[1], 'm')}"
         if len(low) == 3:
             z, thick = (low[2] + high[2]) / 2, _LAYER * float(high[0] - low[0])
             coordinates.append(np.full_like(coordinates[0], z))
             halves.append(thick)
-            words += f", z = {z:.4g} m ± {thick:.2g} m"
+            words += f", z = {shown(z, 'm')} ± {shown(thick, 'm', 2)}"
         p = np.stack(coordinates, axis=-1)
         radius = float(np.linalg.norm(halves))
         rows = [posture(leg, p) for leg in self.legs]

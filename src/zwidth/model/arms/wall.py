@@ -31,6 +31,7 @@ from zwidth.model.environment.velocity import BackwardDifference
 from zwidth.model.environment.wall import Wall
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import from_to
 
 Array = npt.NDArray[np.float64]
 
@@ -246,9 +247,9 @@ class MatrixWall:
 
     def _range(self, part: slice, stiffness_unit: str, damping_unit: str) -> str:
         low, high = np.linalg.eigvalsh(np.array(self.stiffness)[part, part])[[0, -1]]
-        text = f"stiffness {max(low, 0.0):.4g} to {high:.4g} {stiffness_unit}"
+        text = f"stiffness {from_to(max(low, 0.0), high, stiffness_unit)}"
         b = np.linalg.eigvalsh(np.array(self.damping)[part, part])
-        return text + (f", virtual damping {b[0]:.4g} to {b[-1]:.4g} {damping_unit}" if b.any() else "")
+        return text + (f", virtual damping {from_to(b[0], b[-1], damping_unit)}" if b.any() else "")
 
 
 def _symmetric(value: Matrix, key: str) -> tuple[tuple[float, ...], ...]:

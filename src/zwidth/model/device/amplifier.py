@@ -79,7 +79,7 @@ class CurrentAmplifier(Amplifier):
         return Actuation(step=_known(device, "force_resolution"), limit=_known(device, "force_limit"))
 
     def describe(self) -> str:
-        return "current amplifier: converter steps and force limit where known, at once"
+        return "gives its current at once; converter steps and force limit where known"
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,7 @@ def _force_resolution(device: Device, stiffness: Given | None) -> ActuatorCheck:
     if device.force_resolution is None:
         missing.append("the converter's step (force_resolution)")
     if missing:
-        return _unknown(name, unit, f"not known: {', '.join(missing)}")
+        return _unknown(name, unit, f"not known, for want of {', '.join(missing)}")
     assert device.force_resolution is not None
     step = ends(device.force_resolution)[1]
     ratio = count / step
@@ -203,13 +203,13 @@ def current_rise(device: Device) -> ActuatorCheck:
     parts = {k: getattr(device, k) for k in ("motor_inductance", "supply_voltage", "current_limit")}
     missing = [key for key, value in parts.items() if value is None]
     if missing:
-        return _unknown("current rise time", "s", f"not known: {', '.join(missing)}")
+        return _unknown("current rise time", "s", f"not known, for want of {', '.join(missing)}")
     inductance, current = ends(parts["motor_inductance"])[1], ends(parts["current_limit"])[1]
     rise = inductance * current / ends(parts["supply_voltage"])[0]
     period = ends(device.sample_period)[0]
     text = (
-        f"from 0 to {float(current):g} A the current takes {float(rise * 1000):.3g} ms, "
-        f"{float(100 * rise / period):.3g} % of a sample"
+        f"from 0 to {shown(current, 'A', 6)} the current takes {shown(rise, 's', 3)}, "
+        f"{shown(rise / period, '%', 3)} of a sample"
     )
     quick = rise <= QUICK * period
     verdict = "quick" if quick else "too slow for a force that is taken as instant: give it as delay"

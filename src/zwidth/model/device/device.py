@@ -297,9 +297,8 @@ def require_rigid(device: Device, what: str) -> None:
     if device.transmission is not None:
         raise InputError(
             f"{what} counts motor, encoder and hand as one, and {device.name} has a transmission between "
-            "them; zwidth check, limit, map, sweep, compare, simulate, serve, emit, play, plan, diagnose and "
-            "identify know it. To ask of the motor alone leave out [device.transmission] and --transmission, "
-            "in Python take device.motor_side"
+            "them, which zwidth check decides. To ask of the motor alone leave out [device.transmission] and "
+            "--transmission, in Python take device.motor_side"
         )
 
 

@@ -24,6 +24,7 @@ from zwidth.errors import InputError
 from zwidth.model.environment import exponential
 from zwidth.model.environment.environment import RationalFunction
 from zwidth.quantity.parameter import part
+from zwidth.quantity.text import shown
 
 Polynomial = tuple[Fraction, ...]
 Discretization = Literal["backward", "forward", "tustin", "zoh", "impulse", "matched"]
@@ -150,6 +151,6 @@ def _needs_the_future(num: Polynomial, den: Polynomial, method: str, period: Fra
         )
     pole = (1 if method == "backward" else 2) / period
     return (
-        f'H(s) has an unstable pole at s = {float(pole):g} rad/s, which "{method}" sends to infinity at the '
-        f"sample period {float(period):g} s: H(z) would need samples that are still to come"
+        f'H(s) has an unstable pole at s = {float(pole):g}/s, which "{method}" sends to infinity at the '
+        f"sample period {shown(period, 's', 6)}: H(z) would need samples that are still to come"
     )

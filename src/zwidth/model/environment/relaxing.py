@@ -29,6 +29,7 @@ from zwidth.model.environment.viscoelastic import Branch, GeneralizedMaxwell, Ma
 from zwidth.model.environment.wall import Wall
 from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -241,7 +242,7 @@ def position_response(
     before = (0.0 if flow else float(f[0])) if rest is None else float(read_number(rest, "force", "rest"))
     if flow and before:
         raise InputError(
-            f"a solid without a spring flows: it was not at rest under {before:g} N for ever; give rest=0"
+            f"a solid without a spring flows under {shown(before, 'N', 6)}, and was not at rest; give rest=0"
         )
     h, moved = np.diff(t), np.diff(f)
     settled = at_once + sum(a for _, a in modes)

@@ -32,6 +32,15 @@ _SAME_PERIOD = Fraction(1, 10**9)
 """Two sample periods that differ by less, relatively, are one."""
 
 
+def require_period(own: Fraction, given: Fraction) -> None:
+    """Refuse a device whose sample period is not that of an H(z) [s]."""
+    if abs(own - given) > _SAME_PERIOD * own:
+        raise InputError(
+            f"H(z) was made for the sample period {shown(own, 's', 12)} and the device samples every "
+            f"{shown(given, 's', 12)}; discretize it again, or change the device's rate"
+        )
+
+
 def _side(name: str, *default: None) -> Any:
     """Numerator or denominator, which are read together."""
     return part(
@@ -83,12 +92,8 @@ class PulseTransferFunction(Environment):
         InputError
             If H(z) was made for another sample period.
         """
-        own = self.sample_period
-        if own is not None and abs(own.fraction - sample_period) > _SAME_PERIOD * own.fraction:
-            raise InputError(
-                f"H(z) was made for the sample period {float(own):.12g} s and the device samples every "
-                f"{float(sample_period):.12g} s; discretize it again, or change the device's rate"
-            )
+        if self.sample_period is not None:
+            require_period(self.sample_period.fraction, sample_period)
         return RationalFunction(_fractions(self.numerator), _fractions(self.denominator))
 
     def scaled(self, factor: Fraction) -> Self:

@@ -106,8 +106,9 @@ class OnePole(Parametric):
         super().__post_init__()
         if ends(self.time_constant)[1] > LONGEST_TIME_CONSTANT:
             raise InputError(
-                f"time_constant must be at most {LONGEST_TIME_CONSTANT} s, got {self.time_constant}: such a "
-                "filter never follows a hand; check the unit, or leave the virtual damping out"
+                f"time_constant must be ≤ {shown(LONGEST_TIME_CONSTANT, 's')}, got "
+                f"{shown(self.time_constant, 's')}: a slower filter never follows a hand; check the unit, or "
+                "leave the virtual damping out"
             )
 
     def describe(self) -> str:

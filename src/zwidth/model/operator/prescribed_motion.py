@@ -21,7 +21,7 @@ from zwidth.model.operator.operator import (
 )
 from zwidth.model.operator.recorded_force import RecordedOperator, as_record
 from zwidth.quantity.parameter import Parametric, Reads, parameter, part
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -150,8 +150,8 @@ def check_period(period: float | None, times: Signal) -> None:
     given = float(times[-1] - times[0]) / (len(times) - 1)
     if period is not None and abs(given - period) > 1e-6 * period:
         raise InputError(
-            f"the motion was found for a sample period of {period:g} s and is replayed at {given:g} s: "
-            "it takes energy out at its own period only; take the device that was checked"
+            f"the motion was found for a sample period of {shown(period, 's', 6)} and is replayed at "
+            f"{shown(given, 's', 6)}, where it need not take energy out; take the device that was checked"
         )
 
 
@@ -163,7 +163,7 @@ def _position(path: Callable[[float], float], time: float) -> float:
     if not np.isfinite(position):
         raise InputError(
             "the function of positions must give one finite number for a time in seconds; "
-            f"it does not at {time:g} s"
+            f"it does not at {shown(time, 's', 6)}"
         )
     return position
 

@@ -14,7 +14,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.model.operator.operator import Operator, Signals
 from zwidth.quantity.parameter import Parametric, Reads, part
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -110,7 +110,7 @@ class RecordedForce(Parametric, RecordedOperator):
             duration = given * (times[1] - times[0])
             raise InputError(
                 f"the recorded force has {given} values, but the touch has {wanted} sample intervals: each "
-                f"interval holds one value; give {wanted} values, or a duration of {duration:.9g} s"
+                f"interval holds one value; give {wanted} values, or a duration of {shown(duration, 's', 9)}"
             )
         return Signals(force=self.newtons.copy())
 

@@ -32,6 +32,7 @@ from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Certain, CertainOrNone, exact, plain
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -122,8 +123,8 @@ class Modelled(RenderingLaw):
         )
         if turns_over(plant.matrix(), at.period) or plant.held(at.period)[0][0, 1] < SHORTEST * at.period:
             raise InputError(
-                f"device and finger swing, or come to rest, within one sample of {at.period:g} s: two "
-                "readings do not tell a velocity; sample faster, or give less finger_stiffness or damping"
+                f"device and finger swing, or come to rest, within one sample of {shown(at.period, 's', 6)}: "
+                "two readings do not tell a velocity; sample faster, or give less finger_stiffness or damping"
             )
         return plant
 
@@ -295,8 +296,8 @@ class PoleMatched(Modelled):
         plant = self.plant(at)
         if turns_over(plant.matrix(stiffness, damping), at.period):
             raise InputError(
-                f"against {stiffness:g} N/m the model swings half a turn or more in {at.period:g} s: "
-                "poles at e^{sT} would belong to a softer wall; sample faster, or take a softer one"
+                f"against {shown(stiffness, 'N/m', 6)} the model swings half a turn or more in a sample of "
+                f"{shown(at.period, 's', 6)}, as against a softer wall; sample faster, or take a softer one"
             )
         gains = matched(plant, stiffness, damping, at.period)
         return [*plant.numbers(at.period), *gains, float(at.environment.clamped)]

@@ -239,9 +239,9 @@ class EventTransient(RenderingLaw):
     def _decay(self, count: int, period: float) -> list[float]:
         frequency, tau = self._own("frequency"), self._own("time_constant")
         if frequency * period >= 0.5:
+            most, given = shown(0.5 / period, "Hz", 6), shown(frequency, "Hz", 6)
             raise InputError(
-                f"frequency must be below half the rate, {0.5 / period:g} Hz, got {frequency:g} Hz: "
-                "samples cannot follow it"
+                f"frequency must be below half the rate, {most}, got {given}: samples cannot follow it"
             )
         return [exp(-n * period / tau) * sin(2 * pi * frequency * n * period) for n in range(count)]
 
@@ -254,9 +254,8 @@ class EventTransient(RenderingLaw):
         length = 5 * self._own("time_constant") if decay else self._own("duration")
         count = round(length / period)
         if not 1 <= count <= LONGEST_TRANSIENT:
-            raise InputError(
-                f"duration must be from 1 to {LONGEST_TRANSIENT} samples of {period:g} s, got {length:g} s"
-            )
+            given = f"samples of {shown(period, 's', 6)}, got {shown(length, 's', 6)}"
+            raise InputError(f"duration must be from 1 to {LONGEST_TRANSIENT} {given}")
         return count
 
     def _mass(self, at: LoopContext) -> float:

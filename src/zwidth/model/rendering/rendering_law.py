@@ -19,7 +19,7 @@ from zwidth.model.device.device import Device
 from zwidth.model.environment.environment import Environment
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import Parametric
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import told_quantity
 
 
 class LoopContext(NamedTuple):
@@ -140,11 +140,11 @@ class Theorem:
             (self.counts_current_rise, current_rise(device).ok is False, "a current that rises slowly"),
         )
         lacking = [f"{what}, not counted by the proof" for counts, there, what in record if there > counts]
-        has, unit = device.exact("coulomb_friction"), quantity_unit("coulomb_friction", device.motion)
+        has = device.exact("coulomb_friction")
         if has < self.coulomb_friction:
+            less, taken = (told_quantity(f, "force", device.motion) for f in (has, self.coulomb_friction))
             lacking.append(
-                f"Coulomb friction of {float(has):.6g} {unit}, less than the "
-                f"{float(self.coulomb_friction):.6g} {unit} that the converter's steps take"
+                f"Coulomb friction of {less}, less than the {taken} that the converter's steps take"
             )
         return tuple(lacking)
 

@@ -57,7 +57,7 @@ class Line(NamedTuple):
         gives = self.keeps == "mass"
         if motion == "rotary":
             return shown(1 / self.stiffness, "rad/N/m") if gives else shown(self.mass, "kg*m^2")
-        return f"{1e3 / self.stiffness:.4g} mm/N" if gives else f"{1e3 * self.mass:.4g} g"
+        return shown(1 / self.stiffness, "m/N") if gives else shown(self.mass, "kg")
 
     @property
     def mass(self) -> float:

@@ -300,10 +300,10 @@ def refuse_settings(text: str, name: str) -> None:
     """Of OpenFFBoard's configurator a profile, or a copy of the flash: no number has a unit."""
     if any(all(f'"{key}":' in text for key in keys.split()) for keys in ("cls cmd value", "flash addr val")):
         raise InputError(
-            f"{name}: settings of a force-feedback wheel (OpenFFBoard) without units: its effects, 0 to 255, "
-            "are parts of a full scale that only the board's firmware and its motor driver know. Measure "
-            "the torque against angle and speed, and give that: zwidth check openffboard-wheel --stiffness "
-            '"5 N*m/rad" --virtual-damping "0.1 N*m*s/rad"; why it shakes, zwidth diagnose RECORDING tells'
+            f"{name}: settings of a force-feedback wheel (OpenFFBoard) without units: effects, 0 to 255, are "
+            "parts of what only its firmware knows. Measure torque against angle and speed: zwidth check "
+            'openffboard-wheel --stiffness "5 N*m/rad" --virtual-damping "0.1 N*m*s/rad"; why it shakes, '
+            "zwidth diagnose RECORDING tells"
         )
 
 

@@ -81,7 +81,7 @@ class Table:
 def named_kind(table: Table, kinds: Mapping[str, Kind], what: str) -> Kind:
     """The class that the type of a table names; `what` says of which sort it is."""
     if "type" not in table.values:
-        raise InputError(f"{table.label}: type is missing; it may be: {', '.join(kinds)}")
+        raise InputError(f"{table.label}: type is missing; choose from: {', '.join(kinds)}")
     name = table.text("type")
     if name not in kinds:
         hint = _BY_POINTS.format(name) if name in ("detents", "bump-stop") else suggestion(name, kinds)

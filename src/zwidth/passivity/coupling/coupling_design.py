@@ -44,7 +44,7 @@ from zwidth.passivity.scope import Scope
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 from zwidth.showing import Part, Table
 
 Goal = Literal["stiffest"] | Wall
@@ -112,7 +112,7 @@ class CouplingDesign(Result):
             *self.condition.rows(),
             ("felt slowly", told_quantity(self.felt_slowly, "stiffness", motion)),
             ("felt at half the rate", told_quantity(self.felt_quickly, "stiffness", motion)),
-            ("margin of damping", f"{100 * self.margin:.3g} %"),
+            ("margin of damping", shown(self.margin, "%", 3)),
             ("before every passive environment", "passive" if self.condition.holds else "not proved"),
             ("before a rigid one, encoder and friction counted", rigid.outcome),
         ]

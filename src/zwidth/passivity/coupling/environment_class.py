@@ -28,7 +28,7 @@ from zwidth.passivity.formulas.hypotheses import number
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import shown, told_quantity
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -172,12 +172,9 @@ class PassivityExcess:
 
     def describe(self, motion: str = "linear") -> str:
         """The class in words; that its store is bounded below is part of the inequality."""
-        unit = GLOSSARY["damping"].unit_for(motion)
-        length, force = ("rad", "(N*m*s)") if motion == "rotary" else ("m", "(N*s)")
-        return (
-            f"every environment with input index {self.input:.6g} {unit} and output index "
-            f"{self.output:.6g} {length}/{force}"
-        )
+        above = told_quantity(self.input, "damping", motion)
+        below = shown(self.output, "rad/N/m/s" if motion == "rotary" else "m/N/s", 6)
+        return f"every environment with input index {above} and output index {below}"
 
     @classmethod
     def of_damper(cls, least: RealLike, greatest: RealLike) -> PassivityExcess:

@@ -32,7 +32,7 @@ from zwidth.passivity.wording import lines
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import one_of
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import from_to, quantity_unit, shown, told_quantity
 
 _BESIDE = Fraction(1, 10**6)
 """How far beyond an end, relatively, a motion is looked for."""
@@ -105,12 +105,14 @@ class PassiveMasses(Result):
 
     def rows(self) -> list[tuple[str, str]]:
         """The intervals, and what proves and refutes at their ends."""
-        unit = quantity_unit("virtual_mass", self.device.motion)
         rows = [("passive masses", self._masses())]
         for limit in self.limits:
-            at, past = (_mass(verdict) for verdict in (limit.passive, limit.beyond))
-            rows.append((f"at {at:.6g} {unit}", f"{limit.passive.outcome}, {limit.passive.limit}"))
-            rows.append((f"at {past:.6g} {unit}, a millionth beyond", limit.beyond.outcome))
+            at, past = (
+                told_quantity(_mass(verdict), "virtual_mass", self.device.motion)
+                for verdict in (limit.passive, limit.beyond)
+            )
+            rows.append((f"at {at}", f"{limit.passive.outcome}, {limit.passive.limit}"))
+            rows.append((f"at {past}, a millionth beyond", limit.beyond.outcome))
         return rows
 
     def to_dict(self) -> dict[str, Any]:
@@ -218,8 +220,8 @@ def _verdict(device: Device, body: CoupledBody) -> LinearVerdict:
 
 def _span(low: float, high: float, unit: str) -> str:
     if high == inf:
-        return "for every mass" if low == 0 else f"from {low:.6g} {unit} on"
-    return f"up to {high:.6g} {unit}" if low == 0 else f"from {low:.6g} to {high:.6g} {unit}"
+        return "for every mass" if low == 0 else f"from {shown(low, unit, 6)} on"
+    return f"up to {shown(high, unit, 6)}" if low == 0 else f"from {from_to(low, high, unit, 6)}"
 
 
 def _stated(verdict: LinearVerdict, key: str) -> dict[str, Any]:

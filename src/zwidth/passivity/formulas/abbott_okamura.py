@@ -18,6 +18,7 @@ from zwidth.model.device import Device
 from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, number, positive
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import shown
 
 
 class StiffnessLimits(NamedTuple):
@@ -149,7 +150,7 @@ def quantized_wall(device: Device, stiffness: RealLike) -> QuantizedWall:
     k = stiffness_of_wall(stiffness)
     if device.exact("delay") != 0:
         raise InputError(
-            f"these formulas are for a device without delay, got {float(device.exact('delay')):g} s; "
+            f"these formulas are for a device without delay, got {shown(device.exact('delay'), 's', 6)}; "
             "check the wall itself: the exact engine covers every delay"
         )
     values = (device.exact(key) for key in ("damping", "coulomb_friction", "resolution", "sample_period"))

@@ -30,6 +30,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.linear.exact_algebra import is_schur, roots_inside
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -175,7 +176,7 @@ def sampled_frequencies(given: ArrayLike | None, period: float) -> NDArray[np.fl
         return np.asarray((np.arange(_POINTS) + 0.5) * (nyquist / _POINTS), dtype=np.float64)
     hertz = np.atleast_1d(np.asarray(given, dtype=np.float64))
     if hertz.ndim != 1 or not np.all((hertz > 0) & (hertz <= nyquist * (1 + 1e-12))):
-        raise InputError(f"frequencies must lie above 0 and up to half the rate, {nyquist:g} Hz")
+        raise InputError(f"frequencies must lie above 0 and up to half the rate, {shown(nyquist, 'Hz', 6)}")
     return hertz
 
 

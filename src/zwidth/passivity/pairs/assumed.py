@@ -9,7 +9,7 @@ from zwidth.model.pairs import Pair
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.wording import TRANSMISSION
 from zwidth.quantity.exact import ends
-from zwidth.quantity.text import outward_decimal, shown, told_quantity
+from zwidth.quantity.text import shown, shown_at_most, told_quantity
 
 
 def assumed_of_timing(criterion: PairCriterion, any_age: bool) -> Iterator[str]:
@@ -104,7 +104,7 @@ def compensation_rows(criterion: PairCriterion, share: float | None) -> Iterator
     most = (
         "none: without it the pair is not passive either"
         if share is None
-        else f"{outward_decimal(100 * share, False):.4g} % of this on both sides, with all else as it is"
+        else f"{shown_at_most(share, '%')} of this on both sides, with all else as it is"
     )
     yield "largest compensation", most
 

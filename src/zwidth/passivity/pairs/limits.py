@@ -159,7 +159,7 @@ def _share(pair: Pair, kind: Literal["change", "slack"], grain: int) -> Advice:
     advice = turn(knob, pair.motion, kind, grain)
     if not isinstance(advice.to, float):
         return advice
-    part = f"{100 * outward(advice.to, knob):.12g} % of what it is"
+    part = f"{shown(outward(advice.to, knob), '%', 12)} of what it is"
     if kind == "change":
         return replace(advice, text=f"lower the compensation of friction to {part}")
     return replace(advice, text=f"compensation of friction may go up to {part}")

@@ -33,9 +33,17 @@ from zwidth.passivity.ports.positive_real import Band, bands, prove_level
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import shown
 from zwidth.showing import Part, Shown
 
 Which = Literal["input", "output"]
+
+
+def told_place(frequency: float | None) -> str:
+    """Where a value is reached: everywhere, in the limit, or at so many hertz."""
+    if frequency is None:
+        return "at every frequency"
+    return "as the frequency grows" if frequency == inf else f"at {shown(frequency, 'Hz', 6)}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -168,11 +176,7 @@ class PassivityIndex(Shown):
             return f"{symbol} = ∞: the output is zero"
         if isinstance(self.found, NoLevel):
             return f"{symbol} = −∞: {self.reason}"
-        f = self.frequency
-        place = (
-            "at every frequency" if f is None else "as the frequency grows" if f == inf else f"at {f:.6g} Hz"
-        )
-        return f"{symbol} = {self.value:.9g} {place}".replace("-", "−")
+        return f"{symbol} = {self.value:.9g} {told_place(self.frequency)}".replace("-", "−")
 
     def __repr__(self) -> str:
         return f"<PassivityIndex {self.name} {self.describe()}>"

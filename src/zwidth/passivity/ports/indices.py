@@ -22,7 +22,7 @@ from zwidth.model.device import Device
 from zwidth.model.environment.discretization import Discretization
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.system import is_system, time_of
-from zwidth.model.environment.transfer_function import as_environment
+from zwidth.model.environment.transfer_function import as_environment, require_period
 from zwidth.passivity import parameter_limits
 from zwidth.passivity.criterion_choice import decide
 from zwidth.passivity.linear.criterion import frequency, tightest
@@ -37,7 +37,7 @@ from zwidth.passivity.scope import Scope, unit_key
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 
 
 @dataclass(frozen=True, repr=False)
@@ -157,9 +157,6 @@ def passivity_indices(
 # b + T z⁻ᵈ H/(z − 1) to be positive real.
 
 
-_SAME_PERIOD = Fraction(1, 10**9)
-
-
 @dataclass(frozen=True)
 class SampledDamping:
     """The damping that a device must have for H(z), sampled and held, to give out no energy."""
@@ -183,7 +180,7 @@ class SampledDamping:
         if self.required is None:
             return "no damping is enough"
         required = told_quantity(self.required, "damping", self.device.motion, 9)
-        return f"b ≥ {required}, tightest at {self.frequency:.6g} Hz"
+        return f"b ≥ {required}, tightest at {shown(self.frequency, 'Hz', 6)}"
 
     def __repr__(self) -> str:
         return f"<SampledDamping {self.describe()}>"
@@ -248,9 +245,5 @@ def _integrated(port: Port, period: Fraction, delay: int) -> Port:
 
 def _period(port: Port, device: Device) -> Fraction:
     period = device.exact("sample_period")
-    if abs(period - port.period) > _SAME_PERIOD * period:
-        raise InputError(
-            f"H(z) was made for the sample period {float(port.period):.12g} s and the device samples every "
-            f"{float(period):.12g} s; discretize it again, or change the device's rate"
-        )
+    require_period(port.period, period)
     return period

@@ -32,6 +32,7 @@ from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative, wh
 from zwidth.passivity.ports.circle import ONE, all_outside, decays
 from zwidth.passivity.ports.port import Port, leverrier
 from zwidth.quantity.balls import as_fmpq, as_fraction
+from zwidth.quantity.text import from_to, shown
 
 OFFSET = Fraction(1)
 """The g > 0 of every proof."""
@@ -172,8 +173,8 @@ class Band:
 
     def __str__(self) -> str:
         if self.high == inf:
-            return "all frequencies" if self.low == 0 else f"from {self.low:.6g} Hz on"
-        return f"{self.low:.6g} to {self.high:.6g} Hz"
+            return "all frequencies" if self.low == 0 else f"from {shown(self.low, 'Hz', 6)} on"
+        return from_to(self.low, self.high, "Hz", 6)
 
 
 def bands(port: Port, level: Fraction) -> tuple[Band, ...]:

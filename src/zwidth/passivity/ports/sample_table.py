@@ -24,6 +24,7 @@ from zwidth.passivity.result import Result
 from zwidth.quantity.answered import known
 from zwidth.quantity.balls import as_fmpq
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import from_to, shown
 from zwidth.showing import Part, Table
 
 CLEAR = 1e-9
@@ -132,7 +133,7 @@ class SampleTable(Result):
             else "the numbers of the table are taken as exact: give error = … if they are measured"
         )
         return (
-            f"between samples, below {low:.6g} Hz and above {high:.6g} Hz nothing is claimed",
+            f"nothing is claimed between samples or outside {from_to(low, high, 'Hz', 6)}",
             "nothing is claimed of causality and stability, which no table shows",
             exact,
         )
@@ -280,7 +281,7 @@ class ResponseTable(SampleTable):
 
     def _least(self) -> str:
         value, at = self.least
-        return f"the least real part is {value:.9g}, at {at:.6g} Hz".replace("-", "−")
+        return f"the least real part is {value:.9g}, at {shown(at, 'Hz', 6)}".replace("-", "−")
 
 
 def response_table(frequencies: Any, values: Any, error: Any = 0) -> ResponseTable:
@@ -350,15 +351,13 @@ class ScatteringTable(SampleTable):
         """With the largest ‖S‖."""
         gain, at = self.largest
         size = f"{gain:.9g}" if gain - 1 > CLEAR else "1 and less than 1e-9 more"
-        return (
-            f"more comes back than goes in, most at {at:.6g} Hz: ‖S‖ = {size}. No passive network has "
-            "these values."
-        )
+        more = f"more comes back than goes in, most at {shown(at, 'Hz', 6)}: ‖S‖ = {size}"
+        return f"{more}. No passive network has these values."
 
     def told_kept(self) -> str:
         """With the largest ‖S‖."""
         gain, at = self.largest
-        return f"does more come back than goes in; the largest ‖S‖ is {gain:.9g}, at {at:.6g} Hz."
+        return f"does more come back than goes in; the largest ‖S‖ is {gain:.9g}, at {shown(at, 'Hz', 6)}."
 
 
 def scattering_table(network: Any, error: Any = 0) -> ScatteringTable:

@@ -23,7 +23,7 @@ from flint import fmpq_poly
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.ports.evidence import index_document, proof_document
-from zwidth.passivity.ports.index import PassivityIndex, PortAnswer
+from zwidth.passivity.ports.index import PassivityIndex, PortAnswer, told_place
 from zwidth.passivity.ports.largest import largest_level
 from zwidth.passivity.ports.port import Polynomials, Port, as_polynomials, leverrier, typed_at_most
 from zwidth.passivity.ports.positive_real import OFFSET, Band, bands, in_words, is_stable, prove_level
@@ -202,9 +202,7 @@ class RelativeIndex(Shown):
         """The index in a line."""
         if self.bounds is None:
             return "R = ∞: there is an unstable pole, or a wave comes back without end"
-        f = self.frequency
-        place = "as the frequency grows" if f == inf else f"at {f:.6g} Hz"
-        return f"R = {self.value:.9g} {place}"
+        return f"R = {self.value:.9g} {told_place(self.frequency)}"
 
     def __repr__(self) -> str:
         return f"<RelativeIndex {self.describe()}>"

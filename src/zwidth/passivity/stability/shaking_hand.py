@@ -27,7 +27,7 @@ from zwidth.passivity.stability.characteristic import as_floats, decays
 from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import as_fmpq, as_fraction, precision
 from zwidth.quantity.documented import Documented
-from zwidth.quantity.text import told_quantity
+from zwidth.quantity.text import shown, told_quantity
 
 EXCESS = 1e-3
 """By how much more than its limit the hand is active."""
@@ -65,7 +65,7 @@ class ShakingHand(Documented):
             )
         )
         return (
-            f"{activity} at {self.frequency:.4g} Hz, {mass} on {stiffness}: the swing doubles every "
+            f"{activity} at {shown(self.frequency, 'Hz')}, {mass} on {stiffness}: the swing doubles every "
             f"{_spoken(self.doubling_time)}"
         )
 
@@ -247,8 +247,8 @@ def band_of(below: Fraction, period: Fraction) -> Band:
     """The band up to f₀."""
     if not 0 < below <= 1 / (2 * period):
         raise InputError(
-            f"below must be > 0 and at most half the rate, {float(1 / (2 * period)):g} Hz, got "
-            f"{float(below):g} Hz: a hand that is active above has no limit in a sampled loop"
+            f"below must be > 0 and at most half the rate, {shown(1 / (2 * period), 'Hz', 6)}, got "
+            f"{shown(below, 'Hz', 6)}: a hand that is active above has no limit in a sampled loop"
         )
     angle = 2 * PI * below * period
     with precision(_BITS):

@@ -16,6 +16,7 @@ from zwidth.model.device.device import Device
 from zwidth.model.device.friction import FrictionCurve
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import shown
 
 RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
 """The same for a law with a part that relaxes, by samples of delay."""
@@ -91,8 +92,8 @@ def losses_of(device: Device, friction: FrictionCurve | None = None) -> Losses:
     part = delay / period - samples + 1
     if friction is not None and part < 1:
         raise InputError(
-            f"a friction curve is taken with delays of whole samples; this one is {float(delay):g} s with a "
-            f"sample period of {float(period):g} s: take a model below the curve, such as curve.best(…)"
+            f"a friction curve is taken with delays of whole samples of {shown(period, 's', 6)}, got "
+            f"{shown(delay, 's', 6)}: take a model below the curve, such as curve.best(…)"
         )
     losses = device.exact("damping"), device.exact("coulomb_friction"), resolution, period
     return Losses(*losses, samples, part, friction)
@@ -112,9 +113,9 @@ def domain_for(
         raise InputError("a friction curve is not taken with a law that relaxes: take a model below it")
     if law.relaxing is not None and losses.part < 1:
         raise InputError(
-            "available storage of a law that relaxes is computed for delays of whole samples; this one is "
-            f"{float(losses.lag):g} s with a sample period of {float(losses.period):g} s; zwidth check "
-            "covers it in sustained contact"
+            "available storage of a law that relaxes needs a delay of whole samples of "
+            f"{shown(losses.period, 's', 6)}, got {shown(losses.lag, 's', 6)}; zwidth check covers sustained "
+            "contact"
         )
     memory = law.memory + losses.delay
     usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)

@@ -23,6 +23,7 @@ from zwidth.model.arms.replay import first_motion
 from zwidth.model.arms.wall import MatrixWall, WallNeed, fits, require_wall, wall_need
 from zwidth.model.environment.wall import Wall
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 Forces = tuple[float, ...]
@@ -119,9 +120,8 @@ def _delay_samples(rate: float, delay: float) -> int:
     samples = round(delay * rate)
     if samples > _MOST_DELAY:
         raise InputError(
-            f"delay is {delay:g} s, {samples} samples at {rate:g} Hz, and no controller of a haptic device "
-            f"waits for more than {_MOST_DELAY}; a number without a unit is in seconds: "
-            'write "3 ms" for milliseconds'
+            f"delay must be at most {_MOST_DELAY} samples, got {shown(delay, 's', 6)}, {samples} at "
+            f'{shown(rate, "Hz", 6)}; a number without a unit is in seconds: write "3 ms" for milliseconds'
         )
     if abs(delay * rate - samples) > 1e-9 * max(1, samples):
         raise InputError(

@@ -164,7 +164,7 @@ class Covers(NamedTuple):
 
 def what_was_found(outcome: str, covers: Covers, account: Account, found: Evidence) -> str:
     """What was found and how much, without its point."""
-    part = 100 * account.proved.mean()
+    part = shown(account.proved.mean(), "%")
     where = f"{covers.region}{_up_to(covers)}"
     if outcome == "passive":
         return f"No motion of the hand takes energy out with {where}, proved"
@@ -176,12 +176,12 @@ def what_was_found(outcome: str, covers: Covers, account: Account, found: Eviden
         return f"At one point of this map {moved(found.motion, covers.period)}"
     if not (account.margins >= 0).all():
         return (
-            f"{part:.4g} % of the region are proved; at other points the condition fails, and no motion was "
+            f"{part} of the region are proved; at other points the condition fails, and no motion was "
             f"{'looked for' if covers.gives_way else 'found that takes energy out'}"
         )
     if _is_of_encoders(covers, found):
         return f"Whether a motion takes energy out behind these encoders is not known: {found.words}"
-    return f"The condition holds at every point; between the points {part:.4g} % of the region are proved"
+    return f"The condition holds at every point; between the points {part} of the region are proved"
 
 
 def besides(outcome: str, covers: Covers, account: Account, found: Evidence) -> str:

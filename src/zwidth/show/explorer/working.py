@@ -14,6 +14,7 @@ from time import monotonic
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 
 LONGEST = 60.0
 """A job may take [s]: it is seconds."""
@@ -141,8 +142,8 @@ class Workers:
                 process.end()
                 return Answer(
                     None,
-                    f"this took more than {self._longest:g} s, the most that the page spends; the command "
-                    "line has no such limit",
+                    f"this took more than {shown(self._longest, 's', 6)}, the most that the page spends; the "
+                    "command line has no such limit",
                 )
         return process.answer()
 

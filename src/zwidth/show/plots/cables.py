@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 
 from zwidth.passivity.transmission import TransmissionVerdict
+from zwidth.quantity.text import shown
 from zwidth.show.plots.style import (
     BLUE,
     GREY,
@@ -21,7 +22,6 @@ from zwidth.show.plots.style import (
     heading,
     label,
     legend,
-    number,
     quantity_text,
     with_unit,
 )
@@ -52,10 +52,10 @@ def draw_circle(axes: Axes, verdict: TransmissionVerdict) -> None:
             frequencies, radii, 1, where=inside, color=RED, alpha=0.35, lw=0, label="a hand gains"
         )
     if verdict.resonance is not None and verdict.resonance < half:
-        text = f"the motor swings at {number(verdict.resonance)} Hz"
+        text = f"the motor swings at {shown(verdict.resonance, 'Hz')}"
         axes.axvline(verdict.resonance, color=GREY, lw=1, ls=":", label=text)
-    shown = [*marked, *(f for f, r in zip(frequencies, radii, strict=True) if r < 1)]
-    axes.set_xlim(0, min(half, 2 * max(shown, default=half)))
+    inside_or_marked = [*marked, *(f for f, r in zip(frequencies, radii, strict=True) if r < 1)]
+    axes.set_xlim(0, min(half, 2 * max(inside_or_marked, default=half)))
     reach = max(0.05, 3 * (1 - min(radii)))
     axes.set_ylim(1 - reach, 1 + 2 * reach)
     axes.set_xlabel(label("frequency"))

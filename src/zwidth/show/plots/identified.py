@@ -19,7 +19,7 @@ from zwidth.data.tissue.model import Model
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import quantity_unit, shown, told_quantity
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -140,7 +140,8 @@ def _promised(axes: Axes, identified: IdentifiedNumbers) -> None:
     device = identified.device(_CONFIDENCE)
     b, f_c = (float(ends(value)[0]) for value in (device.damping, device.coulomb_friction))
     speed = identified.speed
-    label = f"promised, up to {speed:.3g} {_speed(identified)}: {f_c:.3g} + {b:.3g} |v|"
+    up_to = told_quantity(speed, "friction_speed", identified.motion, 3)
+    label = f"promised, up to {up_to}: {f_c:.3g} + {b:.3g} |v|"
     height = f_c + b * speed
     axes.plot([-speed, 0.0, speed], [height, f_c, height], color=RED, ls="--", lw=1.6, label=label, zorder=6)
 
@@ -255,9 +256,9 @@ def _found(identified: IdentifiedNumbers) -> list[str]:
     text = [
         f"{percent(_CONFIDENCE)} intervals; r² = {identified.explained:.4f}",
         f"{identified.strokes} strokes, {identified.pulses} means "
-        f"over {1e3 * identified.pulse_length:.3g} ms",
-        f"left over: deviation {left:.3g} {unit}, expected {float(np.hypot(counts, force)):.3g} (noise "
-        f"{force:.2g}, encoder {counts:.2g})",
+        f"over {shown(identified.pulse_length, 's', 3)}",
+        f"left over: deviation {shown(left, unit, 3)}, expected {shown(np.hypot(counts, force), unit, 3)} "
+        f"(noise {shown(force, unit, 2)}, encoder {shown(counts, unit, 2)})",
         *identified.findings,
     ]
     broad = (broken(f"· {line}", 0.48 * WIDEST, SMALL).replace("\n", "\n  ") for line in text)

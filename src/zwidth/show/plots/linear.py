@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.quantity.text import shown
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -119,11 +120,11 @@ def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], need: float, u
         axes.plot([], [], ls="none", label="no damping is enough")
         return
     if need == inf:
-        text, height = f"no damping is enough at {number(peak)} Hz", high * 0.9
+        text, height = f"no damping is enough at {shown(peak, 'Hz')}", high * 0.9
     elif max(needs) - min(needs) <= _FLAT * abs(need):
         text, height = f"{number(need)} {unit} at every frequency", need
     else:
-        place = f"at {number(peak)} Hz" if peak else "towards 0 Hz"
+        place = f"at {shown(peak, 'Hz')}" if peak else "towards 0 Hz"
         text, height = f"{number(need)} {unit} {place}", need
     at = max(peak, axes.get_xlim()[0])
     axes.plot([at], [height], "o", color=RED, ms=6, clip_on=False, zorder=5, gid="critical", label=text)

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
+from zwidth.quantity.text import shown
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -242,7 +243,7 @@ def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
     frequencies = np.fft.rfftfreq(x.size, recording.period)
     factor, text = axis(size, "position", "rotary" if seen.rotary else "linear", "amplitude")
     axes.semilogy(frequencies[1:], factor * size[1:] + 1e-12, color=BLUE)
-    at = f"it shakes at {vibration.frequency:.4g} Hz"
+    at = f"it shakes at {shown(vibration.frequency, 'Hz')}"
     axes.axvline(vibration.frequency, color=RED, ls="--", lw=1.2, label=at)
     axes.set_xlim(0, min(frequencies[-1], 6 * vibration.frequency))
     axes.set_ylim(bottom=factor * size.max() * 1e-4)

@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from zwidth.passivity.ports.index import PassivityIndex
+from zwidth.passivity.ports.index import PassivityIndex, told_place
 from zwidth.passivity.ports.indices import PassivityIndices
+from zwidth.quantity.text import shown
 from zwidth.show.plots.style import (
     BLACK,
     BLUE,
@@ -134,20 +135,20 @@ def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
         trace = comparison.traces[name]["tap"]
         time, inside = trace["time"].values, np.flatnonzero(trace["position"].values > 0)
         start = time[inside[0]] if inside.size else 0.0
-        shown = (time >= start - 0.005) & (time <= start + _SHOWN)
+        near = (time >= start - 0.005) & (time <= start + _SHOWN)
         status = str(comparison.scores["status"].sel(law=name).item())
-        force = trace["actuator_force"].values[shown] / newton
+        force = trace["actuator_force"].values[near] / newton
         axes.axhline(row + 0.3, color=_GUIDE, lw=0.6)
         drawn = row + 0.3 - np.clip(force, -0.3, 0.95)
-        axes.plot((time[shown] - start) * 1e3, drawn, color=OUTCOME[status], lw=1.0)
+        axes.plot((time[near] - start) * 1e3, drawn, color=OUTCOME[status], lw=1.0)
         if force.size and force.max() > 0.95:
             beside = (1.04e3 * _SHOWN, row - 0.1)
-            axes.annotate(f"{force.max() * newton:.3g} N", beside, fontsize=SMALL, color=GREY)
+            axes.annotate(shown(force.max() * newton, "N", 3), beside, fontsize=SMALL, color=GREY)
     axes.set_xlim(-10, 1.3e3 * _SHOWN)
     axes.set_xticks([0, 50, 100])
     axes.set_xlabel(with_unit("time after contact", "ms"))
     axes.annotate(
-        f"force under a fast finger;\n{_ROW * newton:.3g} N the median of peaks", (0, 1.0),
+        f"force under a fast finger;\n{shown(_ROW * newton, 'N', 3)} the median of peaks", (0, 1.0),
         xycoords="axes fraction", fontsize=SMALL,
     )  # fmt: skip
 
@@ -304,9 +305,7 @@ def _title(index: PassivityIndex, symbol: str) -> str:
         return f"{symbol} = ∞"
     if not isfinite(index.value):
         return f"{symbol} = −∞"
-    at = index.frequency
-    place = "at every frequency" if at is None else "at ∞ Hz" if at == inf else f"at {number(at)} Hz"
-    return f"{symbol} = {number(index.value)} {place}"
+    return f"{symbol} = {number(index.value)} {told_place(index.frequency)}"
 
 
 def _frequencies(index: PassivityIndex) -> np.ndarray:

@@ -266,17 +266,17 @@ def _draw_joules(axes: Axes, found: NullSpace, shape: Shape | None) -> None:
             axes.plot(factor * sizes, lost, "--", color=BLUE, label="Coulomb friction takes")
     if found.covered:
         axes.axvspan(factor * least, factor * found.covered, color=GREEN, alpha=0.15, lw=0)
-        text = f"proved up to {factor * found.covered:.3g} {unit}"
+        text = f"proved up to {shown(found.covered, 'rad', 3)}"
         axes.axvline(factor * found.covered, color=GREEN, ls="-.", lw=1.2, label=text)
     if found.loop is not None and found.slow is not None:
         reach = found.loop.reach(found.spring.rest)
         axes.axvspan(factor * reach, factor * most, color=ORANGE, alpha=0.15, lw=0)
         axes.plot(
             [factor * reach], [-found.slow.energy], "o", color=BLACK, ms=5,
-            label=f"replayed: {shown(-found.slow.energy, 'J')} out at {factor * reach:.3g} {unit}",
+            label=f"replayed: {shown(-found.slow.energy, 'J')} out at {shown(reach, 'rad', 3)}",
         )  # fmt: skip
     if found.within is not None:
-        text = f"asked: {factor * found.within:.3g} {unit}"
+        text = f"asked: {shown(found.within, 'rad', 3)}"
         axes.axvline(factor * found.within, color=GREY, lw=1.0, ls=":", label=text)
     axes.set_xscale("log")
     axes.set_xlim(factor * least, factor * most)

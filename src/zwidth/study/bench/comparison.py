@@ -190,7 +190,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
     words = [
         f"Alone, a wall of {shown(wanted, unit, 6)} is passive on this device and needs no law."
         if alone.outcome == "passive"
-        else f"The device alone renders {shown(at_most(limit, unit, 4) or 0, unit, 4)} passively, so that "
+        else f"The device alone renders {shown(at_most(limit, unit, 4) or 0, unit, 4)} passively: "
         f"{shown(wanted, unit, 6)} needs a law or other hardware."
         if limit
         else "The device alone renders no wall passively."
@@ -201,7 +201,7 @@ def answer(scores: xr.Dataset, device: Device, wall: Wall) -> str:
         felt = float(scores["static_stiffness"].sel(law=best))
         status = str(scores["status"].sel(law=best).item())
         words.append(
-            f"Quiet under a fast finger and closest to what is wanted is {best!r} with {shown(felt, unit, 4)}"
+            f"Quiet under a fast finger and closest to that is {best!r} with {shown(felt, unit, 4)}"
             + (
                 ""
                 if status == "passive"
@@ -250,7 +250,7 @@ def _promises(scores: xr.Dataset) -> list[str]:
 def _proved(scores: xr.Dataset) -> list[str]:
     """The stiffest law with a certificate, and a stiffer one that is proved on paper alone."""
     words, most = [], 0.0
-    for status, how in (("passive", "Proved"), ("theorem", "Proved on paper, without a certificate,")):
+    for status, how in (("passive", "proved"), ("theorem", "proved on paper, without a certificate,")):
         some = scores.where(scores["status"] == status, drop=True)
         if not some.sizes["law"]:
             continue
@@ -258,7 +258,7 @@ def _proved(scores: xr.Dataset) -> list[str]:
         felt = float(some["static_stiffness"].sel(law=best))
         if felt > most:
             feels = shown(felt, some["static_stiffness"].attrs["units"], 4)
-            words.append(f"{how} for every hand, the stiffest here is {best!r}: {feels} are felt.")
+            words.append(f"The stiffest that is {how} for every hand is {best!r}: it feels like {feels}.")
             most = felt
     return words or ["None of these laws is proved for every hand."]
 

@@ -34,6 +34,7 @@ from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 
 USUAL = Fraction(1, 10)
 """Part of the fastest speed below which a hand is tried first: about what a hand reaches, of 10 m/s."""
@@ -157,7 +158,7 @@ def _in_counts(reach: list[int]) -> dict[str, Floats]:
 def _in_steps(length: float) -> dict[str, Floats]:
     """Of the converter: the force rises in the middle between two of them; the length [m] is for the name."""
     found: dict[str, Floats] = {}
-    of = f"steps of {length:.3g} m"
+    of = f"steps of {shown(length, 'm', 3)}"
     for n in STEPS:
         found.update(_strokes(n, of))
         found.update(_scaled(_sinusoids(n, of), 1.03))  # never half a step from turn to turn
@@ -166,7 +167,7 @@ def _in_steps(length: float) -> dict[str, Floats]:
         found[f"in, then {BESIDE} times {part:g} to either side of half {of}"] = np.append(0.0, beside)
     for start in (0, 1, 5):
         for part in (0.002, 0.02, 0.1, 0.23, 0.4):
-            found[f"{part:g} to either side of step {start + 1} of {length:.3g} m"] = np.array(
+            found[f"{part:g} to either side of step {start + 1} of {shown(length, 'm', 3)}"] = np.array(
                 [start - part, start + part]
             )
     found.update({f"{name}, in {of}": x for name, x in _small()})
@@ -175,7 +176,7 @@ def _in_steps(length: float) -> dict[str, Floats]:
 
 def _about_the_limit(length: float) -> dict[str, Floats]:
     """Into the limit and back, and to and fro within and beyond it; the length [m] is for the name."""
-    of = f"of the {length:.3g} m to the force limit"
+    of = f"of the {shown(length, 'm', 3)} to the force limit"
     found: dict[str, Floats] = {}
     for low, high in ((0.0, 0.9), (0.5, 1.1), (0.9, 1.1), (0.0, 1.5), (0.99, 1.01)):
         there = np.array([low, high])
@@ -266,7 +267,7 @@ def found_motions(device: Device, wall: Wall, fastest: RealLike) -> dict[str, Fl
     for speed in (*(part * USUAL * limit for part in (Fraction(1, 4), Fraction(1, 2), 1)), limit):
         cycle = _worst(device, wall, speed)
         if cycle is not None:
-            found[f"value iteration against the wall alone, up to {float(speed):g} m/s"] = cycle
+            found[f"value iteration against the wall alone, up to {shown(speed, 'm/s', 6)}"] = cycle
     return {n: x for n, x in found.items() if len(x) <= LONGEST_ROUND and speed_of(x, period) <= limit}
 
 

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 
 MOST_VALUES = 1_000_000
@@ -47,8 +48,8 @@ class Axis:
         return np.array(self.values)
 
     def told(self, value: float) -> str:
-        """The parameter at one value, "delay = 0.001 s"."""
-        return f"{self.name} = {value:.12g}{'' if self.unit == '1' else f' {self.unit}'}"
+        """The parameter at one value, "delay = 1 ms"."""
+        return f"{self.name} = {shown(value, self.unit, 12)}"
 
 
 def axis(name: str, given: object, unit: str) -> Axis:
@@ -65,7 +66,7 @@ def axis(name: str, given: object, unit: str) -> Axis:
     seen: set[float] = set()
     for value in values:
         if value in seen:
-            raise InputError(f"{name} has the value {value:.12g} {unit} twice; each loop is asked once")
+            raise InputError(f"{name} has the value {shown(value, unit, 12)} twice; each loop is asked once")
         seen.add(value)
     return Axis(name, unit, values)
 

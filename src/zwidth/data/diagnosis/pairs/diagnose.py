@@ -59,7 +59,7 @@ class PairDiagnosis(Answer[PairChange, PairEvidence, PairRecording]):
             if law is not None:
                 yield f"{arm}: stiffness", shown(law.stiffness, _unit("stiffness", seen), 4)
                 yield f"{arm}: link delay", shown(law.link_delay, "s", 3)
-                yield f"{arm}: explained", f"{100 * (1 - law.unexplained):.4g} %"
+                yield f"{arm}: explained", shown(1 - law.unexplained, "%")
         yield from rows_of_likely(self.likely)
 
     def _measured(self, seen: PairEvidence) -> dict[str, Any]:
@@ -280,7 +280,7 @@ def _evidence(cause: str, seen: PairEvidence) -> Iterator[str]:
     assert follower is not None
     units = {name: GLOSSARY[name].unit_for("rotary" if seen.rotary else "linear") for name in _UNITS}
     given = sum(max(0.0, work) for work in seen.supplied.values())
-    yield f"{_TERM[cause]} gives {100 * seen.supplied[cause] / given:.0f} % of what goes in in a cycle"
+    yield f"{_TERM[cause]} gives {shown(seen.supplied[cause] / given, '%', 2)} of what goes in in a cycle"
     links = [law.link_delay for law in (leader, follower)]
     if cause == "link delay":
         yield (
@@ -291,7 +291,7 @@ def _evidence(cause: str, seen: PairEvidence) -> Iterator[str]:
         yield (
             f"B = {shown(leader.damping, units['virtual_damping'], 3)} acts on a speed of the other arm that "
             f"is {shown(max(links), 's', 3)} old, "
-            f"{np.degrees(seen.vibration.angular * max(links)):.0f} deg of the motion"
+            f"{np.degrees(seen.vibration.angular * max(links)):.0f}° of the motion"
         )
     elif cause == "local damping":
         yield f"D = {shown(leader.local_damping, units['virtual_damping'], 3)} of each arm's own speed"

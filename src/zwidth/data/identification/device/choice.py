@@ -21,6 +21,7 @@ from zwidth.data.identification.device.pulses import pulse
 from zwidth.data.logs import Log
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
+from zwidth.quantity.text import shown
 
 LENGTHS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 96, 128, 192, 256)
 """Samples h of a piece of a pulse that are tried."""
@@ -95,9 +96,9 @@ def too_little(log: Log) -> str:
     seconds = sum(p.position.size for p in pilot) * log.sample_period
     counted = f"{strokes} stroke{'' if strokes == 1 else 's'}"
     return (
-        f"{log.source}: the motion shows too little to tell mass, damping and friction apart: {counted} "
-        f"in {seconds:.3g} s, too few of them long enough, or all too much alike; move to and fro "
-        "for a minute, over most of the workspace, slowly and quickly, and do not rest"
+        f"{log.source}: too little motion to tell mass, damping and friction apart: {counted} in "
+        f"{shown(seconds, 's', 3)}, too few long ones, or all alike; move to and fro for a minute, over most "
+        "of the workspace, slowly and quickly, and do not rest"
     )
 
 

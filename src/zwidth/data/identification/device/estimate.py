@@ -18,8 +18,8 @@ from scipy.special import stdtrit
 from zwidth.data.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 from zwidth.data.logs import Finding
 from zwidth.native.compiled import Array
-from zwidth.quantity.spoken import spoken
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.exact import Interval
+from zwidth.quantity.text import shown
 
 _UNITS = {
     "mass": ("kg", "kg*m^2"),
@@ -73,9 +73,7 @@ class Estimate(NamedTuple):
         return low > 0 or high < 0
 
     def __str__(self) -> str:
-        factor, unit = spoken(self.unit)
-        low, high = (factor * end for end in self.interval())
-        return f"{factor * self.value:.4g} {unit_text(unit)} (95 %: {low:.4g} to {high:.4g})"
+        return f"{shown(self.value, self.unit)} (95 %: {shown(Interval(*self.interval()), self.unit)})"
 
 
 def unit_of(parameter: str, motion: str) -> str:

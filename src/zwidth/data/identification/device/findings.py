@@ -8,13 +8,13 @@ from itertools import chain, combinations
 from typing import NamedTuple
 
 from zwidth.data.identification.device.choice import SURE
-from zwidth.data.identification.device.estimate import Directions, Estimate, perhaps_none, unit_of
+from zwidth.data.identification.device.estimate import Directions, Estimate, perhaps_none
 from zwidth.data.identification.device.fit import Found
 from zwidth.data.identification.device.two_masses import TwoMasses
 from zwidth.data.logs import Finding, Log
 from zwidth.data.logs.table import Block
 from zwidth.errors import InputError
-from zwidth.quantity.text import told_quantity, unit_text
+from zwidth.quantity.text import shown, told_quantity
 
 _SEEN = {
     "slow": "more friction at rest than f_c, as of lubricated contacts (Stribeck),",
@@ -67,8 +67,8 @@ def moves_apart(cable: TwoMasses) -> Finding:
     share = cable.damping.value / (cable.motor["damping"].value + cable.between["handle_damping"].value)
     text = (
         f"the handle moves on a cable, a belt or a gear: nobody at the handle, the two swing at "
-        f"{cable.resonance:.3g} Hz; walls rest on what the motor feels whatever the hand does, "
-        f"{100 * share:.0f} % of the damping of both sides"
+        f"{shown(cable.resonance, 'Hz', 3)}; walls rest on what the motor feels whatever the hand does, "
+        f"{shown(share, '%', 2)} of the damping of both sides"
     )
     return Finding(kind="two masses", text=text)
 
@@ -94,23 +94,24 @@ def _model(
     full, viscous = found.regression(whole), found.regression(whole[:-1])
     if full is None or viscous is None:
         return
-    named = ("spring", "damping", "coulomb_friction")
-    stiffness, damping, force = (unit_text(unit_of(name, found.motion)) for name in named)
-    limits = [f"{2 * fit.value('damping') / period:.4g} {stiffness}" for fit in (viscous, full)]
+    limits = [
+        told_quantity(2 * fit.value("damping") / period, "stiffness", found.motion, 4)
+        for fit in (viscous, full)
+    ]
     if "coulomb_friction" not in names:
         if found.sees(names, "coulomb_friction"):
             yield Finding(
                 kind="wrong model",
                 text="a mass and a damper are the wrong model: Coulomb friction of "
-                f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T reads {limits[0]} "
-                f"instead of {limits[1]}: walls between the two would be called passive and are not; "
-                'identify with model="Coulomb and viscous"',
+                f"{told_quantity(full.value('coulomb_friction'), 'force', found.motion, 3)} is seen; without "
+                f"it 2b/T is {limits[0]} and not {limits[1]}: walls between the two would be called passive "
+                'and are not; identify with model="Coulomb and viscous"',
             )
     elif estimates["coulomb_friction"].beyond(SURE):
         yield Finding(
             kind="Coulomb friction",
-            text=f"Coulomb friction is seen; a mass–damper model of the same data would say b = "
-            f"{viscous.value('damping'):.3g} {damping}, 2b/T = {limits[0]} instead of {limits[1]}",
+            text="Coulomb friction is seen; a mass and a damper alone would have 2b/T = "
+            f"{limits[0]} instead of {limits[1]}",
         )
 
 
@@ -165,7 +166,7 @@ def refuse_impossible(
 def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[str]) -> str:
     """What to type, and how the data would look then."""
     words = " and ".join(name.replace("_", " ") for name in channels)
-    right = " and ".join(f"{name} {found[name].value:.4g} {unit_text(found[name].unit)}" for name in below)
+    right = " and ".join(f"{name} {shown(found[name].value, found[name].unit)}" for name in below)
     typed = " and ".join(f'scale={{"{name}": "-1"}}' for name in channels)
     other = ""
     if channels == log.channels:

@@ -131,23 +131,22 @@ class MeasurementPlan(Shown):
 
 
 def _protocol(plan: MeasurementPlan) -> Iterator[str]:
-    rotary = plan.guess.motion == "rotary"
     symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
-    known = f"within ±{100 * plan.precision:.3g} % ({100 * plan.confidence:.4g} % confidence)"
+    known = f"within ±{shown(plan.precision, '%', 3)} ({shown(plan.confidence, '%')} confidence)"
     yield f"To know {symbol}, which sets the limit K = {wall}, {known}:"
     yield (
-        "1. Motor off. Hold the handle by the load cell and by nothing else; up to "
-        f"{told_quantity(plan.force, 'force', plan.guess.motion, 2)} will act."
+        "1. Motor off. Hold the handle by the load cell and by nothing else; "
+        f"up to {told_quantity(plan.force, 'force', plan.guess.motion, 2)} will act."
     )
     yield "2. Let go, set the zero of the load cell, start to record."
     for n, (stroke, share) in enumerate(zip(plan.strokes, plan.shares, strict=True), start=3):
-        yield f"{n}. {_spoken(stroke, share, rotary)}"
+        yield f"{n}. {_spoken(stroke, share, plan.guess.motion)}"
     yield (
         f"{3 + len(plan.strokes)}. Stop the recording. Identify all runs so far together. "
         f"With {FEWEST_STROKES} strokes or more, and {symbol} known so well: done. Else go on with 2."
     )
     runs = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
-    yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
+    yield f"Expected: {runs} of {shown(RUN, 's')}. Vary lengths and times, do not rest, do not hit the stops."
     yield _reached(plan)
     if plan.apart is not None:
         yield from _each_side(plan, plan.apart)
@@ -166,8 +165,8 @@ def _each_side(plan: MeasurementPlan, device: Device) -> Iterator[str]:
     )
     yield (
         f"· Nobody at the handle. Let the motor make slow strokes and on top a force of some {shake}, drawn "
-        f"anew every other sample, for {MOST * period:.2g} s; identify it with the actuator's force alone: "
-        "m, b and f_c of each side, k and c."
+        f"anew every other sample, for {shown(MOST * period, 's', 2)}; identify it with the actuator's force "
+        "alone: m, b and f_c of each side, k and c."
     )
     yield (
         f"· Clamp the handle, motor off, tap the motor. It rings at f_held = √(k/m₁)/2π{held}, and where the "
@@ -194,12 +193,10 @@ def _reached(plan: MeasurementPlan) -> str:
     return f"So far it was seen up to {so_far}. {told}"
 
 
-def _spoken(stroke: Stroke, share: float, rotary: bool) -> str:
-    size = (
-        told_quantity(stroke.length, "position", "rotary", 3) if rotary else f"{100 * stroke.length:.3g} cm"
-    )
+def _spoken(stroke: Stroke, share: float, motion: str) -> str:
+    size = told_quantity(stroke.length, "position", motion, 3)
     count = max(round(share * RUN / stroke.duration), 1)
-    return f"{count} strokes of some {size}, {stroke.duration:.3g} s each, to and fro."
+    return f"{count} strokes of some {size}, {shown(stroke.duration, 's', 3)} each, to and fro."
 
 
 def plan_identification(
@@ -253,9 +250,8 @@ def plan_identification(
         if not 0 < value < 1:
             raise InputError(f"{name} must be between 0 and 1, got {value!r}; 0.05 and 0.95 are usual")
     if slow <= fast:
-        raise InputError(
-            f"a slow stroke takes longer than a fast one, got slow {slow:g} s and fast {fast:g} s"
-        )
+        given = f"slow {shown(slow, 's', 6)} and fast {shown(fast, 's', 6)}"
+        raise InputError(f"a slow stroke takes longer than a fast one, got {given}")
     limits = _limiting(device)
     if speed is not None:
         fast = min(fast, length / 2 * pi / (MARGIN * speed))

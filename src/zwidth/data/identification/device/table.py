@@ -121,12 +121,15 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
 
 
 def facts(identified: IdentifiedNumbers) -> str:
-    force = quantity_unit("force", identified.motion)
+    noise, offset = (
+        told_quantity(value, "force", identified.motion, 3)
+        for value in (identified.force_noise, identified.offset)
+    )
     inward = told_quantity(identified.fastest[0], "friction_speed", identified.motion, 3)
     outward = told_quantity(identified.fastest[1], "friction_speed", identified.motion, 3)
     return (
-        f"r² = {identified.explained:.4f}, noise {identified.force_noise:.3g} {force} per sample, offset "
-        f"{identified.offset:.3g} {force}; {identified.strokes} strokes, {identified.pulses} means over "
+        f"r² = {identified.explained:.4f}, noise {noise} per sample, offset {offset}; "
+        f"{identified.strokes} strokes, {identified.pulses} means over "
         f"{shown(identified.pulse_length, 's', 3)}; T = {shown(identified.sample_period, 's', 6)}, "
         f"Δ = {told_quantity(identified.resolution, 'position', identified.motion)}\n"
         f"friction seen up to {inward} into the wall, {outward} out of it"
@@ -242,10 +245,9 @@ def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | N
 
 
 def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]:
-    milliseconds = 1e3 * identified.pulse_length
     story = [
         f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means "
-        f"over {milliseconds:.3g} ms, r² = {identified.explained:.4f}.",
+        f"over {shown(identified.pulse_length, 's', 3)}, r² = {identified.explained:.4f}.",
         "m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a, in means over smooth pulses inside strokes.",
         f"{assumed(identified)}.",
     ]
@@ -366,9 +368,8 @@ def _why_zero(identified: IdentifiedNumbers, limit: Limit, confidence: float) ->
     low, high = estimate.interval(confidence)
     if low > 0:
         return "lower bounds of friction by speed leave none above the damping; slower strokes would tell"
-    factor, unit = spoken(estimate.unit)
-    ends_ = f"{factor * low:.2g} … {factor * high:.2g} {unit_text(unit)}"
-    return f"{what} is known only to {ends_}, {percent(confidence)}; {more} would tell"
+    known_to = shown(Interval(low, high), estimate.unit, 2)
+    return f"{what} is known only to {known_to}, {percent(confidence)}; {more} would tell"
 
 
 def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
@@ -395,16 +396,16 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
             f"a longer log would not halve the interval of {name}: half of it and more is what means over "
             f"{shown(identified.pulse_length, 's', 3)} may be off; smoother, longer strokes allow longer ones"
         )
-    factor, speed = spoken(GLOSSARY["friction_speed"].unit_for(identified.motion))
-    inward, outward = (factor * fast for fast in identified.fastest)
+    unit = GLOSSARY["friction_speed"].unit_for(identified.motion)
+    inward, outward = (shown(fast, unit, 3) for fast in identified.fastest)
     lines.append(
-        f"friction was seen up to {inward:.3g} {speed} into the wall and {outward:.3g} out of it; at higher "
+        f"friction was seen up to {inward} into the wall and {outward} out of it; at higher "
         "speeds it is not known: log quicker strokes, zwidth plan --speed says which"
     )
     slow, quick = np.quantile(np.abs(identified.seen["speed"].values), [0.1, 0.9])
     if quick < NARROW * slow:
         lines.append(
-            f"most of the motion is between {factor * slow:.2g} and {factor * quick:.2g} {speed}: slower and "
+            f"most of the motion is between {shown(slow, unit, 2)} and {shown(quick, unit, 2)}: slower and "
             "quicker strokes tell damping and Coulomb friction apart"
         )
     return tuple(lines)
@@ -412,7 +413,7 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
 
 def percent(confidence: float) -> str:
     """0.99 as "99 %", never more than it is."""
-    return f"{int(confidence * 1e6 + 1e-6) / 1e4:.6g} %"
+    return shown(int(confidence * 1e6 + 1e-6) / 1e6, "%", 6)
 
 
 def _times_longer(estimate: Estimate, confidence: float) -> float:

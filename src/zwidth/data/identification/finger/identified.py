@@ -20,7 +20,7 @@ from zwidth.data.identification.finger.means import Pieces
 from zwidth.data.logs import Finding, Log
 from zwidth.errors import InputError
 from zwidth.model.operator.fingers import Finger
-from zwidth.quantity.text import in_words
+from zwidth.quantity.text import from_to, in_words, shown
 from zwidth.showing import Part, Shown, Table
 
 BY_ACTUATOR = "stiffness by the actuator"
@@ -50,9 +50,9 @@ def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
     if log.motion == "rotary" or (high >= SOFTEST and low <= STIFFEST):
         return
     raise InputError(
-        f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that ({SOFTEST:g} "
-        f"to {STIFFEST:g} N/m at the most): {_ranges(pieces)}; most likely a unit is off by 1000, such as mm "
-        'read as m or mN as N: state it with units={"position": "mm"}, or with scale'
+        f"{log.source}: stiffness comes out as {stiffness}; that of fingers, hands and arms is "
+        f"{from_to(SOFTEST, STIFFEST, 'N/m')}: {_ranges(pieces)}; most likely a unit is off "
+        'by 1000, mm read as m or mN as N: state it with units={"position": "mm"}, or with scale'
     )
 
 
@@ -67,7 +67,7 @@ def _ranges(pieces: Pieces) -> str:
         least, most = USUAL[name]
         odd = "" if least <= size <= most else ", which is unlikely"
         unit = "m" if name == "position" else "N"
-        said.append(f"the {name.replace('_', ' ')} goes over {size:.3g} {unit} in a piece{odd}")
+        said.append(f"the {name.replace('_', ' ')} goes over {shown(size, unit, 3)} in a piece{odd}")
     return ", ".join(said)
 
 
@@ -80,10 +80,9 @@ def refuse_disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_k
         return
     raise InputError(
         f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's force "
-        f"and {actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely one "
-        "of them has another unit or scale than was stated, the load cell is at the end of its range, or "
-        "more than the actuator and the finger act on the device; check both with a known weight, or leave "
-        'one out with columns={"hand_force": None} and the device given'
+        f"and {actuator} by the actuator's: a unit or a scale is not as stated, the load cell is at "
+        "the end of its range, or something else pushes too; check both with a known weight, or leave one "
+        'out with columns={"hand_force": None} and the device given'
     )
 
 
@@ -94,11 +93,10 @@ class LoadCellError(InputError):
 def late(log: Log, lag: Lag) -> LoadCellError:
     """What is said of a load cell that is late."""
     return LoadCellError(
-        f"{log.source}: the force of the hand is recorded late, by {1e3 * lag.least:.2g} to "
-        f"{1e3 * lag.most:.2g} ms: each millisecond takes as much damping from the finger as its spring "
-        "gives in it, and mass too; give the device and log the actuator's force, which tell the finger "
-        "without the load cell; or take the filter of the load cell away, or shift its samples by what it is "
-        "late"
+        f"{log.source}: the force of the hand is recorded late, by "
+        f"{from_to(lag.least, lag.most, 's', 2)}: a late force takes damping and mass from the finger; give "
+        "the device and log the actuator's force, which tell the finger without the load cell; or take the "
+        "filter of the load cell away, or shift its samples"
     )
 
 
@@ -119,9 +117,8 @@ def unseen_lag(lag: Lag) -> Finding:
     return Finding(
         kind="late, or read before the step",
         text="the force of the hand shows the actuator's steps late: either it is read before them, and in "
-        f"time, or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
-        "the intervals of mass and damping hold both; give the device or the actuator's delay, and they will "
-        "not have to",
+        f"time, or it is recorded up to {shown(lag.most, 's', 2)} late; the intervals of mass and damping "
+        "hold both; to know which, give the device or the actuator's delay",
     )
 
 

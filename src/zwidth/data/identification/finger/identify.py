@@ -59,6 +59,7 @@ from zwidth.model.device.device import Device, require_rigid
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import RealLike, ends
 from zwidth.quantity.parameter import read_number
+from zwidth.quantity.text import shown
 
 ROUNDS = 4
 """Of the model that makes the instrument."""
@@ -364,9 +365,9 @@ def _half_a_sample(values: Array, period: float) -> Array:
 
 def _too_little(log: Log) -> str:
     return (
-        f"{log.source}: {log.duration:.3g} s show too little to tell mass, damping and stiffness apart: "
-        "shake the finger for a minute with steps in random order, some 10 ms each and a newton strong, so "
-        "that it moves by many counts; hold still; take longer pieces if the sample period is long"
+        f"{log.source}: {shown(log.duration, 's', 3)} show too little to tell mass, damping and stiffness "
+        "apart: hold still, and shake the finger for a minute with steps in random order, some 10 ms each "
+        "and 1 N, so that it moves by many counts; take longer pieces if the sample period is long"
     )
 
 

@@ -20,6 +20,7 @@ from zwidth.data.logs.sensors import beyond
 from zwidth.data.logs.table import whole_runs
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,8 +71,8 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]
     if not runs:
         raise InputError(
-            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in {log.duration:.3g} "
-            "s; record a minute, lose no samples, or take shorter pieces"
+            f"{log.source} has no run of {shown(seconds, 's', 6)} without a hole: {log.runs} runs in "
+            f"{shown(log.duration, 's', 3)}; record a minute, lose no samples, or take shorter pieces"
         )
 
     def rows(columns: Iterable[Array | None]) -> Array | None:

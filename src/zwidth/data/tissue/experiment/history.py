@@ -18,7 +18,7 @@ from zwidth.data.tissue.experiment.columns import Raw
 from zwidth.data.tissue.findings import MOST_HOLES
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import from_to, shown
 
 TOUCH = 5.0
 """Times its noise by which the force shows that the probe touches."""
@@ -103,8 +103,8 @@ def _whole(
     said.extend(_of_holes(time, holes, begins))
     if begins and kind == "creep":
         raise InputError(
-            f"{source} has a hole in time after t = {time[begins[0] - 1]:.4g} s, across which the force "
-            "changes: how the tissue crept meanwhile is not known; give the part before it or after it"
+            f"{source} has a hole in time after t = {shown(time[begins[0] - 1], 's')}, across which the "
+            "force changes: how the tissue crept meanwhile is not known; give the part before it or after it"
         )
     return History(time, x, f, kind, loaded, surface, begins, tuple(said))
 
@@ -139,7 +139,7 @@ def _of_holes(time: Array, holes: list[int], begins: tuple[int, ...]) -> list[Fi
     for k in holes[:3]:
         moved = k + 1 in begins
         how = "what the branches hold after it is fitted" if moved else "what is held did not change"
-        text = f"no samples from t = {time[k]:.4g} to {time[k + 1]:.4g} s: {how}"
+        text = f"no samples from t = {from_to(time[k], time[k + 1], 's')}: {how}"
         said.append(Finding(kind="hole", text=text))
     if len(holes) > 3:
         said.append(Finding(kind="hole", text=f"and {len(holes) - 3} other holes in time"))

@@ -42,6 +42,7 @@ from zwidth.machine.servo.devices.frames import counted_on, get_signed, unwritte
 from zwidth.machine.servo.devices.serial_port import BusServo, check_watchdog
 from zwidth.machine.servo.posix import Bytes, discard, write_all
 from zwidth.native.compiled import Array
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
 # What it remembers: the servo; where the registers that are asked for stand together; how many questions it
@@ -199,16 +200,16 @@ class Dynamixel(BusServo):
         current_unit = None if current_unit is None else in_si(current_unit, "A", "current_unit")
         if torque_per_current <= 0:
             raise InputError(
-                f"torque per current must be > 0, got {torque_per_current:g} N·m/A: with it forces become "
+                f"torque per current must be > 0, got {torque_per_current!r} N·m/A: with it forces become "
                 "currents; measure it, or take the slope of the servo's performance graph"
             )
         if not 0 < watchdog <= _LONGEST_WATCHDOG * _WATCHDOG_UNIT:
             raise InputError(
-                f"watchdog must be 20 ms to 2.54 s, what the register holds, got {watchdog:g} s; "
+                f"watchdog must be 20 ms to 2.54 s, what the register holds, got {watchdog!r} s; "
                 "take the shortest that the loop keeps up with"
             )
         if current_unit is not None and current_unit <= 0:
-            raise InputError(f"current unit must be > 0, got {current_unit:g} A: the register counts in it")
+            raise InputError(f"current unit must be > 0, got {current_unit!r} A: the register counts in it")
         super().__init__(port, identifier, baud)
         self.torque_per_current = torque_per_current
         self._steps = math.ceil(watchdog / _WATCHDOG_UNIT - 1e-9)  # 0.14/0.02 is a little more than 7
@@ -235,16 +236,17 @@ class Dynamixel(BusServo):
     def on_silence(self) -> str:
         """What the servo does by itself."""
         return (
-            f"after {self.watchdog:g} s without a packet on the bus, to any servo, it stops and takes no "
-            "current until its watchdog is cleared (firmware 38 and later)"
+            f"after {shown(self.watchdog, 's', 6)} without a packet on the bus, to any servo, it stops and "
+            "takes no current until its watchdog is cleared (firmware 38 and later)"
         )
 
     def describe(self) -> str:
         """Which servo, its numbers, and what has been met of it."""
-        limit = "" if math.isnan(self._most_torque) else f", {self._most_torque:.3g} N·m at most"
+        limit = "" if math.isnan(self._most_torque) else f", {shown(self._most_torque, 'N*m', 3)} at most"
         if self._pwm < _FULL_PWM:
-            limit += f", with {100 * self._pwm / _FULL_PWM:.3g} % of its supply's voltage"
-        return f"{self._name}, {self.torque_per_current:g} N·m/A{limit}; tried against an emulator only"
+            limit += f", with {shown(self._pwm / _FULL_PWM, '%', 3)} of its supply's voltage"
+        constant = shown(self.torque_per_current, "N*m/A", 6)
+        return f"{self._name}, {constant}{limit}; tried against an emulator only"
 
     @property
     def _name(self) -> str:
@@ -295,10 +297,9 @@ class Dynamixel(BusServo):
             )
         if mode & _REVERSE and self.reverse is None:
             raise InputError(
-                f"{self._name} is reversed by its Drive Mode {_DRIVE_MODE}: by the e-Manual that inverts its "
-                "positions, and its currents too on the X540 and XW540 alone, so that on others a wall pulls "
-                "in; clear bit 0, or try by hand which way a current turns it and give reverse = true or "
-                "false"
+                f"{self._name} is reversed by its Drive Mode {_DRIVE_MODE}, which inverts positions, and "
+                "currents on X540 and XW540 alone: on others a wall pulls in; clear bit 0, or try by hand "
+                "which way a current turns it and give reverse = true or false"
             )
         return mode
 

@@ -55,6 +55,7 @@ from zwidth.machine.servo.devices.frames import (
 from zwidth.machine.servo.devices.serial_port import BusServo
 from zwidth.machine.servo.posix import Bytes, discard, write_all
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
 # What it remembers: the servo; how many questions it has asked; the position before [counts] and whether
@@ -168,7 +169,7 @@ class Feetech(BusServo):
         full_duty_torque = in_si(full_duty_torque, "N*m", "full_duty_torque")
         if full_duty_torque <= 0:
             raise InputError(
-                f"full-duty torque must be > 0, got {full_duty_torque:g} N·m: with it torques become duties; "
+                f"full-duty torque must be > 0, got {full_duty_torque!r} N·m: with it torques become duties; "
                 "measure it at standstill with your supply, or take the stall torque of the data sheet at "
                 "its voltage"
             )
@@ -187,10 +188,10 @@ class Feetech(BusServo):
 
     def describe(self) -> str:
         """Which servo, its numbers, and what has been met of it."""
-        limit = "" if math.isnan(self._most_torque) else f", {self._most_torque:.3g} N·m at most"
+        limit = "" if math.isnan(self._most_torque) else f", {shown(self._most_torque, 'N*m', 3)} at most"
         return (
-            f"{self._name}, a duty in place of a torque, {self.full_duty_torque:g} N·m at full duty and "
-            f"standstill{limit}; tried against an emulator only"
+            f"{self._name}, a duty in place of a torque, {shown(self.full_duty_torque, 'N*m', 6)} at full "
+            f"duty and standstill{limit}; tried against an emulator only"
         )
 
     @property

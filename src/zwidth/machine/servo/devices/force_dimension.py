@@ -33,6 +33,7 @@ from zwidth.machine.servo.connection import (
 )
 from zwidth.machine.servo.posix import now
 from zwidth.quantity.parameter import one_of
+from zwidth.quantity.text import shown
 
 _PACKAGE = "forcedimension_core"
 _STEPS = 160
@@ -101,7 +102,7 @@ class ForceDimension(LibraryConnection):
     @property
     def on_silence(self) -> str:
         """By its firmware, where it has a watchdog."""
-        cut = f"turns its force off after {1e3 * WATCHDOG:g} ms without a command"
+        cut = f"turns its force off after {shown(WATCHDOG, 's')} without a command"
         if self._watched is None:
             return f"{cut}, if its firmware has a watchdog"
         return cut if self._watched else "holds the last force: its firmware has no watchdog"
@@ -109,8 +110,8 @@ class ForceDimension(LibraryConnection):
     def open(self, sample_period: float) -> None:
         if 2 * sample_period >= WATCHDOG:
             raise InputError(
-                f"the sample period must be below {1e3 * WATCHDOG / 2:g} ms, got {1e3 * sample_period:g} ms: "
-                "the device turns its force off after two periods that long; serve it faster"
+                f"the sample period must be below {shown(WATCHDOG / 2, 's')}, got "
+                f"{shown(sample_period, 's', 6)}: the device turns its force off after two that long"
             )
         dhd = self._dhd = _library()
         dhd.enableSimulator(self.simulator)

@@ -54,6 +54,7 @@ from zwidth.machine.servo.devices.frames import (
 from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, discard, now, write_all
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
 TO_DEVICE, FROM_DEVICE = 0xA5, 0x5A
@@ -199,7 +200,7 @@ class Hapkit(CompiledConnection):
     def on_silence(self) -> str:
         """The sketch has a watchdog of its own."""
         return (
-            f"sets its force to 0 after {1e3 * WATCHDOG:g} ms without a frame, and keeps it there until "
+            f"sets its force to 0 after {shown(WATCHDOG, 's')} without a frame, and keeps it there until "
             "it is opened anew"
         )
 
@@ -224,15 +225,15 @@ class Hapkit(CompiledConnection):
     def _check(self, sample_period: float) -> None:
         if 2 * sample_period >= WATCHDOG:
             raise InputError(
-                f"the sample period must be below {1e3 * WATCHDOG / 2:g} ms, got {1e3 * sample_period:g} ms: "
-                "the board cuts its force after two periods that long; serve it faster"
+                f"the sample period must be below {shown(WATCHDOG / 2, 's')}, got "
+                f"{shown(sample_period, 's', 6)}: the board cuts its force after two that long"
             )
         exchange = 10 * (_QUESTION + _ANSWER) / self.baud
         if 2 * exchange > sample_period:
             raise InputError(
-                f"at {self.baud} Bd a question and its answer take {1e3 * exchange:.3g} ms, more than half "
-                f"of the sample period of {1e3 * sample_period:g} ms: take 1000000 Bd, in the sketch too, "
-                "or serve it more slowly"
+                f"at {self.baud} Bd a question and its answer take {shown(exchange, 's', 3)}, more than half "
+                f"of the sample period of {shown(sample_period, 's', 6)}: take 1000000 Bd, in the sketch "
+                "too, or serve it more slowly"
             )
 
     def close(self) -> None:
@@ -247,6 +248,6 @@ class Hapkit(CompiledConnection):
     def describe(self) -> str:
         """Which device, over what, which axis: one line."""
         return (
-            f"Hapkit at {self.port}, {self.baud} Bd, its handle, {1e6 * abs(self.count):.4g} µm "
-            f"in one count, force in whole mN, watchdog of {1e3 * WATCHDOG:g} ms"
+            f"Hapkit at {self.port}, {self.baud} Bd, its handle, {shown(abs(self.count), 'm')} "
+            f"in one count, force in whole mN, watchdog of {shown(WATCHDOG, 's')}"
         )

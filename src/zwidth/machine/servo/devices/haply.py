@@ -54,6 +54,7 @@ from zwidth.machine.servo.devices.serial_port import open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.parameter import one_of
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
 RESET, SETUP, EXCHANGE = 0, 1, 2
@@ -393,10 +394,10 @@ class HaplyPantograph(_Haply):
 
     def describe(self) -> str:
         """Which device, over what, which axis: one line."""
-        lengths = ", ".join(f"{1e3 * length:g}" for length in self.links)
+        lengths = ", ".join(shown(length, "m", 6) for length in self.links)
         return (
             f"Haply board at {self.port}, device {self.number}, {self.axis} of a pantograph "
-            f"with links of {lengths} mm; no watchdog"
+            f"with links of {lengths}; no watchdog"
         )
 
     def _set_axis(self, memory: Array) -> None:

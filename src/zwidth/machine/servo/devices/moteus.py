@@ -70,6 +70,7 @@ from zwidth.machine.servo.devices.moteus_frames import (
 from zwidth.machine.servo.devices.serial_port import check_watchdog, open_port
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
 # What it remembers besides MODE, FAULT and TURNS: how many questions it has asked, the position before
@@ -248,7 +249,7 @@ class Moteus(CompiledConnection):
         watchdog = in_si(watchdog, "s", "watchdog")
         if not 0.001 <= watchdog <= 32.0:
             raise InputError(
-                f"watchdog must be 1 ms to 32 s, what the register holds, got {watchdog:g} s; "
+                f"watchdog must be 1 ms to 32 s, what the register holds, got {watchdog!r} s; "
                 "take some sample periods, at most what the hand can do without"
             )
         self.port = port
@@ -263,7 +264,7 @@ class Moteus(CompiledConnection):
     @property
     def on_silence(self) -> str:
         """What the controller does by itself."""
-        first = f"after {self.watchdog:g} s without a torque it"
+        first = f"after {shown(self.watchdog, 's', 6)} without a torque it"
         last = ", and stays so until it is stopped; what it held up falls where it is limp"
         mode = self._configuration.get(_TIMEOUT_MODE)
         if mode is None:

@@ -46,6 +46,7 @@ from zwidth.machine.servo.devices.odrive_lines import (
     give_torque,
 )
 from zwidth.machine.servo.devices.serial_port import open_port
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
 _ANSWER_TIME = 1.0
@@ -150,8 +151,8 @@ class ODrive(CompiledConnection):
         """Reach the ODrive, set it up, and wait until the axis is in closed loop control."""
         if self.watchdog < 4 * sample_period:
             raise InputError(
-                f"a watchdog of {self.watchdog:g} s is too short for a sample period of {sample_period:g} s: "
-                f"one lost sample must not end the torque; give {4 * sample_period:g} s or more"
+                f"watchdog must be {shown(4 * sample_period, 's', 6)} or more, four sample periods, got "
+                f"{shown(self.watchdog, 's', 6)}: one lost sample must not end the torque"
             )
         self._serial = open_port(self.port, self.baud)
         try:
@@ -179,9 +180,7 @@ class ODrive(CompiledConnection):
     @property
     def on_silence(self) -> str:
         """Its own watchdog."""
-        return (
-            f"lets the motor go {self.watchdog:g} s after the last torque that was not 0, by its own watchdog"
-        )
+        return f"lets the motor go {shown(self.watchdog, 's', 6)} after the last torque that was not 0"
 
     def describe(self) -> str:
         """Which axis, over what, and what the position is."""
@@ -232,12 +231,12 @@ class ODrive(CompiledConnection):
         current = self._found("motor.config.current_lim", "config.motor.current_soft_max")
         constant = self._found("motor.config.torque_constant", "config.motor.torque_constant")
         most = min(current * constant, self._found("motor.config.torque_lim", "config.torque_soft_max"))
-        limits = "an unknown torque" if isnan(most) else f"{most:.3g} N·m"
+        limits = "an unknown torque" if isnan(most) else shown(most, "N*m", 3)
         fastest = self._found("controller.config.vel_limit")
         fastest *= self._found("controller.config.vel_limit_tolerance")
         if self._found("controller.config.enable_overspeed_error") == 0:
             fastest = inf
-        dropped = "above an unknown speed" if isnan(fastest) else f"above {TURN * fastest:.3g} rad/s"
+        dropped = "above an unknown speed" if isnan(fastest) else f"above {shown(TURN * fastest, 'rad/s', 3)}"
         self._limits = f", at most {limits}; it lets the motor go {dropped}, whatever it holds"
 
     def _known(self, *names: str) -> str:

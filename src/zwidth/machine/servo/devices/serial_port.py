@@ -29,6 +29,7 @@ from zwidth.machine.servo.connection import (
 from zwidth.machine.servo.devices.frames import get_unsigned
 from zwidth.machine.servo.posix import Bytes, check_supported, discard, now
 from zwidth.native.compiled import Array
+from zwidth.quantity.text import shown
 
 
 def open_port(port: str, baud: int) -> Any:
@@ -209,6 +210,6 @@ def check_watchdog(watchdog: float, sample_period: float) -> None:
     """Refuse a watchdog [s], which ends a force by itself, that one late sample would set off."""
     if watchdog < 2 * sample_period:
         raise InputError(
-            f"watchdog must be at least two sample periods, {2 * sample_period:g} s, or one late sample ends "
-            f"the force; got {watchdog:g} s"
+            f"watchdog must be at least two sample periods, {shown(2 * sample_period, 's', 6)}, or one late "
+            f"sample ends the force; got {shown(watchdog, 's', 6)}"
         )

@@ -54,6 +54,7 @@ from zwidth.model.environment import Wall
 from zwidth.model.operator.operator import LinearHand, Operator, Signals
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.model.operator.operator import Signal
@@ -298,8 +299,8 @@ class Simulated(CompiledConnection):
         frame, (force, anchor, target, switch) = setup.frame, setup.frame.optional()
         if sample_period != float(frame.period):
             raise InputError(
-                f"the simulated device has a sample period of {float(frame.period):g} s, and is served at "
-                f"{sample_period:g} s: the delay and the hand's script are of its own; change the device"
+                f"the simulated device has a sample period of {shown(frame.period, 's', 6)} and is served at "
+                f"{shown(sample_period, 's', 6)}: delay and hand are of its own period; change the device"
             )
         if switch.size:
             raise InputError(

@@ -23,6 +23,7 @@ import numpy as np
 from zwidth.machine.servo.connection import GOOD
 from zwidth.machine.servo.ring import PHASES
 from zwidth.native.compiled import Array
+from zwidth.quantity.text import shown
 
 
 class Rows(Protocol):
@@ -232,7 +233,7 @@ class Tally:
             f"late by {1e6 * curve[LATENESS]:.0f} µs, {1e6 * self._longest:.0f} µs at most",
             f"{self._missed} deadlines missed",
         ]
-        parts[2:2] = [f"{rate:.4g} Hz"] if (rate := self._rate) else []
+        parts[2:2] = [shown(rate, "Hz")] if (rate := self._rate) else []
         parts += [f"{self._bad} bad answers"] if self._bad else []
         parts += [f"{self._skipped} samples not shown"] if self._skipped else []
         return " · ".join(parts).replace("-", "−")

@@ -33,6 +33,7 @@ from zwidth.machine.servo.live.rows import (
     scales_of,
 )
 from zwidth.native.compiled import Array
+from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
 _FRAME = 0.1
@@ -132,14 +133,14 @@ def picture(title: str, line: str, envelope: Envelope, graphs: Sequence[_Graph],
     words = Text(line, style="bold")
     width, height = out.size
     below = len(words.wrap(out, width))
-    head = Text(f"{printable(title)}, the last {SPAN:g} s", overflow="ellipsis", no_wrap=True)
+    head = Text(f"{printable(title)}, the last {shown(SPAN, 's')}", overflow="ellipsis", no_wrap=True)
     room = height - below - 1
-    shown = max(min(len(graphs), room // (_LEAST_LINES + 1)), 1)
+    fitting = max(min(len(graphs), room // (_LEAST_LINES + 1)), 1)
     columns = max(width - _SCALE, 1) * DOTS_ACROSS
     low, high = envelope.drawn(columns)
     parts = [head]
-    for i, graph in enumerate(graphs[:shown]):
-        lines = room // shown + (i < room % shown) - 1
+    for i, graph in enumerate(graphs[:fitting]):
+        lines = room // fitting + (i < room % fitting) - 1
         parts += _drawn(graph, low, high, max(lines, 1))
     return Group(*parts, words)
 

@@ -34,7 +34,7 @@ from zwidth.model.operator.prescribed_motion import PrescribedMotion
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.model.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.native.compiled import Array
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import shown, told_quantity
 from zwidth.showing import Part, Shown
 
 if TYPE_CHECKING:
@@ -119,10 +119,9 @@ class Replay(Shown):
         """In a line."""
         if not self.different:
             return f"the simulation gives the same force in all {self.samples:,} samples, to the last bit"
-        unit = quantity_unit("force", self.motion)
         return (
             f"the simulation gives another force in {self.different:,} of {self.samples:,} samples, "
-            f"by {self.largest:.3g} {unit} at most"
+            f"by {told_quantity(self.largest, 'force', self.motion, 3)} at most"
         )
 
 
@@ -154,8 +153,9 @@ def touch_of(
     samples, period = int(numbers[-1] - numbers[0]), device.exact("sample_period")
     if samples < 1 or abs(float(period) / recording.period - 1) > 1e-9:
         raise InputError(
-            f"{recording.path} has {samples + 1} samples of this law, {recording.period:g} s apart, and the "
-            f"device has one every {float(period):g} s: give the device that was served, and two samples"
+            f"{recording.path} has {samples + 1} samples of this law, one every "
+            f"{shown(recording.period, 's', 6)}, and the device has one every {shown(period, 's', 6)}: give "
+            "the device that was served, and two samples"
         )
     at = numbers[read] - numbers[0]
     missed, late = np.ones(samples + 1), np.zeros(samples + 1)

@@ -201,8 +201,8 @@ def _arm(device: Device, period: Fraction, plant: Plant, hand: LinearHand, start
     """What the engine needs of an arm, SI."""
     if device.exact("delay") > LONGEST_DELAY:
         raise InputError(
-            f"a delay of {float(device.exact('delay')):g} s is not played, at most {LONGEST_DELAY} s: "
-            "the hand would feel nothing for so long"
+            f"a delay of {shown(device.exact('delay'), 's', 6)} is not played, at most "
+            f"{shown(LONGEST_DELAY, 's')}: the hand would feel nothing for so long"
         )
     delay = device.exact("delay") / period
     return {
