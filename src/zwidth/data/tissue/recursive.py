@@ -81,11 +81,6 @@ class RecursiveSolid:
     relaxation_times
         Bounds of η1/μ1 [s]; None: T/10 to 100 000 T.
 
-    Raises
-    ------
-    InputError
-        If an argument is not of these.
-
     Notes
     -----
     What is returned is admissible: μ0, μ1 ≥ 0, η1/μ1 > 0 and within the bounds.  The regression itself runs

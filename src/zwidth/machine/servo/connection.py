@@ -207,13 +207,7 @@ class Placement(Parametric):
 
     @classmethod
     def read(cls, table: Table, motion: str) -> Placement:
-        """From the keys origin and sense of a table.
-
-        Raises
-        ------
-        InputError
-            If one has a value it cannot have.
-        """
+        """From the keys origin and sense of a table."""
         found = {}
         for key, quantity in (("origin", GLOSSARY["position"]), ("sense", plain("sense", "1 or -1"))):
             if key in table.values:

@@ -158,11 +158,6 @@ class Hapkit(CompiledConnection):
         the position grows.  To be found with a rule, see docs/connections.md.
     baud
         As the sketch has it [Bd].
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"

@@ -351,11 +351,6 @@ class HaplyPantograph(_Haply):
     links
         Lengths of an arm at a motor, of one at the tip, and between the motors, l, L and d [m]; None:
         those of the version.
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"
@@ -414,11 +409,6 @@ class HaplyMotor(_Haply):
         As of `HaplyJoint`.
     number
         As of `HaplyPantograph`.
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"

@@ -82,11 +82,6 @@ class ODrive(CompiledConnection):
         Of a UART [1/s]; USB ignores it.
     watchdog
         Seconds without a torque after which the ODrive lets the motor go by itself.
-
-    Raises
-    ------
-    InputError
-        If a number is out of its range.
     """
 
     motion = "rotary"
