@@ -32,8 +32,9 @@ from zwidth.machine.servo.connection import (
     Placement,
     seconds_of,
 )
+from zwidth.machine.servo.loop import await_sample, lateness
 from zwidth.machine.servo.pair_law import PairLaw
-from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, margin, most_awake, now, until
+from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, most_awake, now
 from zwidth.machine.servo.priority import Granted, RealTime
 from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured
 from zwidth.machine.servo.report import PairServoReport, ending
@@ -284,18 +285,14 @@ class PairServo:
         before: tuple[int, float] | None = None
         start = now()
         while self._reason == RUNNING:
-            due = start + int(k * tick)
-            awake = margin(awake, until(due, awake), most)
-            at = now()
+            taken, due, at, awake = await_sample(k, start, tick, awake, most)
             if k == 0:
-                start = due = at
-            missed = int((at - due) / tick)
-            k, due = k + missed, due + int(missed * tick)
-            if k > last:
+                taken, due, start = 0, at, at
+            if taken > last:
                 self._reason = DONE
                 return
-            self._missed += missed
-            late = min(max((at - due) * 1e-9, 0.0), period * (1 - 1e-9))
+            self._missed += taken - k
+            k, late = taken, lateness(at, due, period)
             readings = self._measured(k, at, late)
             self._look(readings, before, k, k * period + late)
             if self._reason != RUNNING:

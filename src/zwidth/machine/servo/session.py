@@ -20,15 +20,7 @@ from zwidth import __version__
 from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
 from zwidth.machine.servo import cycle
-from zwidth.machine.servo.connection import (
-    CompiledConnection,
-    Connection,
-    LibraryConnection,
-    Opened,
-    Placement,
-    blank,
-    seconds_of,
-)
+from zwidth.machine.servo.connection import Connection, Opened, Placement, reach, seconds_of
 from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED, Packed, pack
 from zwidth.machine.servo.loop import LoopThread, Shared, shared
 from zwidth.machine.servo.posix import check_supported, now
@@ -123,7 +115,7 @@ class Servo:
         self._first = self._packed(self.environment, 0.0)  # refused before the device is reached
         self._laws: list[tuple[str, Verdict]] = []
         self._closed = False
-        self._opened = self._open()
+        self._opened = reach(connection, float(self._period))
         self._shared = self._anew(self._opened)
         atexit.register(self.close)
 
@@ -306,13 +298,6 @@ class Servo:
 
     def _packed(self, law: Environment, here: float) -> Packed:
         return pack(self._certain, law, here, self._limits.start_force)
-
-    def _open(self) -> Opened:
-        period = float(self._period)
-        if isinstance(self.connection, CompiledConnection):
-            return self.connection.open(period)
-        cast(LibraryConnection, self.connection).open(period)
-        return blank(0, 1, 1)
 
     def _anew(self, opened: Opened) -> Shared:
         """Arrays for a run from sample 0."""
