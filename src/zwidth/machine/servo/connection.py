@@ -14,8 +14,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
-from types import TracebackType
-from typing import ClassVar, Literal, NamedTuple, cast
+from typing import ClassVar, Literal, NamedTuple, Self, cast
 
 import numpy as np
 
@@ -80,6 +79,20 @@ class Opened(NamedTuple):
 def blank(own: int, inbox: int = 512, outbox: int = 512) -> Opened:
     """Memory with room for `own` numbers from OWN on, and for so many bytes in and out."""
     return Opened(np.zeros(OWN + own), np.zeros(inbox, np.uint8), np.zeros(outbox, np.uint8))
+
+
+class Closing(ABC):
+    """What is closed at the end of a ``with``."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @abstractmethod
+    def close(self) -> object:
+        """Give back what was taken; may be called again."""
 
 
 class Connection(ABC):
@@ -239,7 +252,7 @@ class Placement(Parametric):
             return cls(found.get("origin", 0.0), int(found.get("sense", 1)))
 
 
-class Axis:
+class Axis(Closing):
     """One axis of a device that is reached, at a period T [s], until it is closed; asked from Python.
 
     Sample by sample positions and forces along the x of a placement, of a compiled connection and of one of a
@@ -254,14 +267,6 @@ class Axis:
         self._measure, self._apply = questions(connection)
         self._opened = reach(connection, sample_period)
         self._at_first = self._opened.memory.copy()
-
-    def __enter__(self) -> Axis:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, raised: BaseException | None, where: TracebackType | None
-    ) -> None:
-        self.close()
 
     def begin(self) -> None:
         """The next sample is number 0: of a simulated device the script begins anew."""

@@ -27,6 +27,7 @@ from zwidth.machine.servo.connection import (
     GOOD,
     REFUSED,
     Axis,
+    Closing,
     CompiledConnection,
     LibraryConnection,
     Placement,
@@ -88,7 +89,7 @@ class _Side:
     loss: float = 0.0
 
 
-class PairServo:
+class PairServo(Closing):
     """Leader and follower, served.
 
     Parameters
@@ -147,13 +148,6 @@ class PairServo:
             ]
             opened.pop_all()
         atexit.register(self.close)
-
-    def __enter__(self) -> PairServo:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Force 0, then both are let go."""
-        self.close()
 
     def measure(self, duration: RealLike = _MEASURED) -> Measured:
         """Run the loop with force 0 for so long [s], and note what this machine and the links are like.

@@ -20,7 +20,7 @@ from zwidth import __version__
 from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
 from zwidth.machine.servo import cycle
-from zwidth.machine.servo.connection import Connection, Opened, Placement, reach, seconds_of
+from zwidth.machine.servo.connection import Closing, Connection, Opened, Placement, reach, seconds_of
 from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED, Packed, pack
 from zwidth.machine.servo.loop import LoopThread, Shared, shared
 from zwidth.machine.servo.posix import check_supported, now
@@ -57,7 +57,7 @@ _LONGEST = 1 << 60
 _MEASURED = "1 s"
 
 
-class Servo:
+class Servo(Closing):
     """One axis of a device, served.
 
     Parameters
@@ -119,10 +119,7 @@ class Servo:
         self._shared = self._anew(self._opened)
         atexit.register(self.close)
 
-    def __enter__(self) -> Servo:
-        return self
-
-    def __exit__(self, kind: object, error: object, trace: object) -> None:
+    def __exit__(self, kind: object = None, *_: object) -> None:
         """Force 0, then the device is let go."""
         if kind is not None and self.running:
             self._shared.control[STOP] = FAILED
