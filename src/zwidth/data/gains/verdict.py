@@ -8,10 +8,9 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
 
-from zwidth.data.gains.arms import MOST_READINGS, ArmGains, Delay
+from zwidth.data.gains.arms import MOST_READINGS, ArmGains
 from zwidth.data.gains.best import best, passive_compensation, required_damping, stiffest
 from zwidth.data.gains.joint import CoupledJoint, JointGains
-from zwidth.data.gains.plant import GivenPlant
 from zwidth.errors import InputError
 from zwidth.missing import suggestion
 from zwidth.model.specification.table import quoted
@@ -21,7 +20,6 @@ from zwidth.passivity.result import least
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.documented import Documented
-from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.showing import Headline, Lines, Part, Shown, Table
 
@@ -32,30 +30,23 @@ UNITS = "K in N·m/rad, kd and b in N·m·s/rad; leader/follower where they diff
 _NONE = "none"
 
 
-def check_gains(
-    gains: ArmGains,
-    plant: GivenPlant = None,
-    rate: RealLike | None = None,
-    delay: Delay | None = None,
-    drive_rate: RealLike | None = None,
-    ideal_drive: bool = False,
-    compensated: bool = True,
-) -> GainsVerdict:
+def check_gains(gains: ArmGains, *given: Any, **named: Any) -> GainsVerdict:
     """Decide for each joint whether two hands can take energy out of it, with the gains of the files.
 
     Parameters
     ----------
     gains
         As `read_gains` reads them.
-    plant, rate, delay, drive_rate, ideal_drive, compensated
-        As `ArmGains.pairs` takes them; what is not given is the family's, and is said.
+    given, named
+        As of `ArmGains.setting`: plant, rate, delay, drive_rate, ideal_drive, compensated; what is not given
+        is the family's, and is said.
 
     Raises
     ------
     InputError
         If the leader feels nothing, no plant is known, or a number is outside its bound.
     """
-    setting = gains.setting(plant, rate, delay, drive_rate, ideal_drive, compensated)
+    setting = gains.setting(*given, **named)
     pairs = zip(gains.joints, setting.joints, strict=True)
     joints = tuple(JointVerdict(joint, model, check_pair(model.pair())) for joint, model in pairs)
     return GainsVerdict(gains, joints, setting.notes)
