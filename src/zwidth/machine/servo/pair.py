@@ -37,7 +37,7 @@ from zwidth.machine.servo.loop import await_sample, lateness
 from zwidth.machine.servo.pair_law import PairLaw
 from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, most_awake, now
 from zwidth.machine.servo.priority import Granted, RealTime
-from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured
+from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured, shares
 from zwidth.machine.servo.report import PairServoReport, ending
 from zwidth.machine.servo.safety import (
     ASKED,
@@ -225,8 +225,6 @@ class PairServo(Closing):
 
     def report(self) -> PairServoReport:
         """What happened in the last run."""
-        late = np.array(self._late or [0.0])
-        p50, p99, most = np.quantile(late, [0.5, 0.99, 1.0], method="higher")
         leader, follower = self._sides
         return PairServoReport(
             title=self._title,
@@ -238,7 +236,7 @@ class PairServo(Closing):
             missed=self._missed,
             held=self._held,
             cut=self._cut,
-            lateness=(float(p50), float(p99), float(most)),
+            lateness=shares(np.array(self._late or [0.0])),
             energy_out=(leader.work, follower.work),
             friction_loss=(leader.loss, follower.loss),
             met_hardware=all(side.axis.connection.met_hardware for side in self._sides),
