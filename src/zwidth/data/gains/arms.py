@@ -60,11 +60,7 @@ class ArmGains(Shown):
         """True where a law of both arms is known: the leader feels the follower."""
         return all(joint.leader is not None for joint in self.joints)
 
-    def pairs(self, *given: Any, **named: Any) -> dict[str, Pair]:
-        """The pair of each joint, by its name; what is given, and refused, is as of `setting`."""
-        return {joint.name: joint.pair() for joint in self.setting(*given, **named).joints}
-
-    def setting(
+    def pairs(
         self,
         plant: GivenPlant = None,
         rate: RealLike | None = None,
@@ -72,8 +68,8 @@ class ArmGains(Shown):
         drive_rate: RealLike | None = None,
         ideal_drive: bool = False,
         compensated: bool = True,
-    ) -> Setting:
-        """The joints that `pairs` is made of, with what was taken for granted.
+    ) -> dict[str, Pair]:
+        """The pair of each joint, by its name.
 
         Parameters
         ----------
@@ -97,6 +93,19 @@ class ArmGains(Shown):
         InputError
             If there is no law of both arms, no plant, or a number is outside its bound.
         """
+        setting = self.setting(plant, rate, delay, drive_rate, ideal_drive, compensated)
+        return {joint.name: joint.pair() for joint in setting.joints}
+
+    def setting(
+        self,
+        plant: GivenPlant = None,
+        rate: RealLike | None = None,
+        delay: Delay | None = None,
+        drive_rate: RealLike | None = None,
+        ideal_drive: bool = False,
+        compensated: bool = True,
+    ) -> Setting:
+        """The joints that `pairs` is made of, with what was taken for granted."""
         if not self.is_pair:
             raise InputError(
                 f"{self.published.title}: the leader feels nothing, so this is no pair"

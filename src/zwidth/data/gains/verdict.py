@@ -38,7 +38,7 @@ def check_gains(gains: ArmGains, *given: Any, **named: Any) -> GainsVerdict:
     gains
         As `read_gains` reads them.
     given, named
-        As of `ArmGains.setting`: plant, rate, delay, drive_rate, ideal_drive, compensated; what is not given
+        As of `ArmGains.pairs`: plant, rate, delay, drive_rate, ideal_drive, compensated; what is not given
         is the family's, and is said.
 
     Raises
