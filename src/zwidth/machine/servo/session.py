@@ -323,7 +323,7 @@ class Servo(Closing):
             ROWS,
             period=period,
             title=self._title,
-            about=self._about(),
+            about=about(self.device, self.environment, self.connection, self.placement, self.safety),
         )
         self._rows.events.append(self._event(self.environment))
         return found
@@ -331,10 +331,6 @@ class Servo(Closing):
     @property
     def _title(self) -> str:
         return f"{self.environment.describe(self.device.motion)} on {self.connection.describe()}"
-
-    def _about(self) -> dict[str, Any]:
-        """What a recording keeps of it."""
-        return about(self.device, self.environment, self.connection, self.placement, self.safety)
 
     def _event(self, law: Environment) -> dict[str, Any]:
         return {
@@ -376,7 +372,7 @@ class Servo(Closing):
 def about(
     device: Device, environment: Environment, connection: Connection, placement: Placement, safety: Safety
 ) -> dict[str, Any]:
-    """Texts and numbers, units in the keys."""
+    """What a recording keeps of a servo: texts and numbers, units in the keys."""
     x = "rad" if device.motion == "rotary" else "m"
     return {
         "zwidth_version": __version__,
