@@ -63,11 +63,6 @@ def rotary(
         Of the actuator, as torques [N·m].
     rest
         The other arguments of `Device`: rate or sample_period, delay, …
-
-    Raises
-    ------
-    InputError
-        If a number is missing, not finite, or outside its bound.
     """
     if counts_per_turn is not None:
         if resolution is not None:
