@@ -131,6 +131,7 @@ class Law(NamedTuple):
 
     def stored(self, x: Fraction) -> Fraction:
         """Φ(x) less its lowest value between the ends, Φ' the force of points, within the limit."""
+        spend(len(self.points), each=300)
         most, places = self.limit, {x, *(place for place, _ in self.points)}
         for (x0, f0), (x1, f1) in pairwise(self.points):
             levels = (y for y in (0, most or 0, -(most or 0)) if (f0 < y) != (f1 < y))
