@@ -15,7 +15,7 @@ PLACES = {
     "zwidth check wheel.toml --stiff": ["--stiffness"],
     "zwidth check --type max": ["maxwell"],
     "zwidth simulate knob.toml --operator dow": ["dowel"],
-    "zwidth workspace ": ["arm.urdf", "falcon", "hapkit", "haply-2diy", "two-link"],
+    "zwidth workspace ": ["arm.urdf", "falcon", "firmware/", "hapkit", "haply-2diy", "two-link"],
     "zwidth identify ses": ["session.csv"],
 }
 """Lines as typed so far, and what may follow."""

@@ -144,7 +144,7 @@ def test_servos_ask_for_their_voltage(tmp_path):
     path = written(tmp_path, "a.json", SERVOS)
     with pytest.raises(zw.InputError, match="--supply-voltage"):
         zw.read_gains(path)
-    with pytest.raises(zw.InputError, match="at most 15 V"):
+    with pytest.raises(zw.InputError, match="≤ 15 V"):
         zw.read_gains(path, supply_voltage=24)
     left, right = {"type": "so101_follower"}, {"position_p_coefficient": 8}
     arms = json.dumps({"robot": {"left_arm_config": left, "right_arm_config": right}})

@@ -410,7 +410,7 @@ def test_what_cannot_be_is_refused_before_a_port_is_opened(make, given, said):
     [
         (Dynamixel(NOBODY, torque_per_current=1.8), 0.021, "two sample periods"),
         (Moteus(NOBODY, watchdog=0.01), 0.006, "two sample periods"),
-        (ODrive(NOBODY), 0.02, r"give 0\.08 s or more"),  # four sample periods
+        (ODrive(NOBODY), 0.02, "must be 80 ms or more"),  # four sample periods
         (Hapkit(NOBODY, COUNT), 10e-3, "below 10 ms"),  # two of them within 20 ms
         (Hapkit(NOBODY, COUNT, baud=115_200), 1e-3, "1.39 ms, more than half"),  # (7 + 9) bytes of 10 bits
         (ForceDimension(), 10e-3, "below 10 ms"),

@@ -170,15 +170,12 @@ def _damping(arm: Arm) -> str:
     if values.ndim == 2:
         unit = "N·s/m" if all(slides) else "N·m·s/rad" if not any(slides) else "in N, m, s, rad"
         return f"{rows_in_words(values)} {unit}"
-    units = ["N·s/m" if slid else "N·m·s/rad" for slid in slides]
-    if len(set(values)) == len(set(units)) == 1 < len(values):
-        return f"{values[0]:.6g} {units[0]} in each"
-    if len(values) > _FEW:
-        told = zip(arm.joint_names, values, units, strict=True)
-        return ", ".join(f"{name} {b:.6g} {unit}" for name, b, unit in told)
-    if len(set(units)) == 1:
-        return ", ".join(f"{b:.6g}" for b in values) + f" {units[0]}"
-    return ", ".join(f"{b:.6g} {unit}" for b, unit in zip(values, units, strict=True))
+    each = [shown(b, "N*s/m" if slid else "N*m*s/rad", 6) for b, slid in zip(values, slides, strict=True)]
+    if len(set(each)) == 1 < len(each):
+        return f"{each[0]} in each"
+    if len(each) > _FEW:
+        return ", ".join(f"{name} {told}" for name, told in zip(arm.joint_names, each, strict=True))
+    return ", ".join(each)
 
 
 # The wall of `zwidth workspace`: as stiff in every direction by options, or given by matrices in a file.

@@ -26,6 +26,7 @@ from zwidth.model.arms.joints import as_matrix
 from zwidth.model.arms.legs import Leg, LeggedArm
 from zwidth.model.arms.mechanism import Coordinate, Frame, Mechanism, parsed
 from zwidth.model.device.transmission import Transmission
+from zwidth.quantity.text import from_to, shown
 from zwidth.quantity.units import in_si
 
 _ENDINGS = (".urdf", ".xml", ".mjcf")
@@ -98,7 +99,7 @@ def read_arm(
         raise InputError(f"{path.name} gives {_to_damp(model, way, lacking, held)}")
     locked = {i: held.get(i, 0.0) for i in bare if i not in lacking}
     left = [i for i in range(m) if i not in locked]
-    words = [f"{names[i]} locked at {at:.4g} {every[i].unit}" for i, at in locked.items() if i in held]
+    words = [f"{names[i]} locked at {shown(at, every[i].unit)}" for i, at in locked.items() if i in held]
     efforts = [one.effort for one in every if 0 < one.effort < np.inf]
     limits = efforts if len(efforts) == m else ()
 
@@ -252,10 +253,8 @@ def _values(each: Sequence[Coordinate], given: Mapping[str, float | str], what: 
     for i, value in found.items() if what == "hold" else ():
         low, high = each[i].limits
         if not (np.isfinite(value) and low <= value <= high):
-            bounds = (
-                f"from {low:g} to {high:g} {each[i].unit}" if np.isfinite(each[i].limits).any() else "finite"
-            )
-            raise InputError(f"hold: {each[i].name} can be {bounds}, got {value:g}")
+            bounds = from_to(low, high, each[i].unit) if np.isfinite(each[i].limits).any() else "finite"
+            raise InputError(f"hold: {each[i].name} can be {bounds}, got {shown(value, each[i].unit)}")
     return found
 
 

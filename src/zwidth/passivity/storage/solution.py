@@ -11,7 +11,6 @@ from zwidth.model.device.friction import FrictionCurve
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.transfer_function import as_environment
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome_evidence import taken
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Outcome, Scope
 from zwidth.passivity.storage.chain_program import ChainProgram
@@ -27,7 +26,7 @@ from zwidth.passivity.storage.value_iteration import (
     checked_effort,
     time_limit,
 )
-from zwidth.passivity.wording import claim_of_passivity
+from zwidth.passivity.wording import claim_of_a_motion, claim_of_passivity
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
@@ -76,8 +75,9 @@ class AvailableStorage(PassivityAnswer):
         """The outcome in a sentence."""
         if self.outcome == "passive":
             return f"{claim_of_passivity(self.scope, False)}."
-        if self.witness is not None:
-            return f"{taken(self.witness)}."
+        if (moved := self.witness) is not None:
+            lasts = moved.motion.samples * moved.sample_period
+            return f"{claim_of_a_motion(moved.energy, lasts, moved.depth, moved.peak_speed, moved.unit)}."
         if self.cut_by_time:
             return "Neither a proof nor a motion was found before the time given was over: more may decide."
         return "Neither a proof nor a motion was found: finer steps, or more effort, may decide."

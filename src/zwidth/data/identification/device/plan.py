@@ -276,9 +276,9 @@ def _positive(name: str, value: RealLike, quantity: str) -> float:
 
 def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
     if device.mass is None:
-        told = "inertia: a rough one is enough, for example --inertia '0.01 kg*m^2'"
+        told = 'inertia: a rough one is enough, for example --inertia "0.01 kg*m^2"'
         if device.motion == "linear":
-            told = "mass: a rough one is enough, for example --mass '0.1 kg'; a kitchen scale will do"
+            told = 'mass: a rough one is enough, for example --mass "0.1 kg"; a kitchen scale will do'
         raise InputError(f"the guess has no {told}")
     for name in ("damping", "coulomb_friction"):
         if not float(device.exact(name)) > 0:
