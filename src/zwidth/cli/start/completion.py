@@ -114,7 +114,7 @@ def _devices() -> Collection[str]:
 
 def _registered(module: str, name: str) -> Callable[[], Collection[str]]:
     """The names of a registry, which is loaded when they are asked for."""
-    return lambda: getattr(import_module(f"zwidth.{module}"), name)  # type: ignore[no-any-return]
+    return lambda: getattr(import_module(f"zwidth.{module}"), name)
 
 
 _laws = _registered("model.rendering", "LAWS")
