@@ -22,13 +22,13 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "firmware"))
 
 from emitted_laws import laws, readings
 from machines import Ran, compiled_c, law_in_c, law_in_javascript, run_c, run_node
-from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_in_c, plant_in_javascript
+from moved_plants import CELLS, PERIOD, PLANTS, hand_and_law, plant_header, plant_in_c, plant_in_javascript
 
 from zwidth.loop.law import sampled_force, sampled_force_at
 from zwidth.loop.plant import STATE_SIZE, WORK
 from zwidth.machine.firmware.javascript import module
 from zwidth.machine.firmware.law import LawProgram, law_program
-from zwidth.machine.firmware.plant import one_period, plant_header, plant_module, plant_program
+from zwidth.machine.firmware.plant import one_period, plant_module, plant_program
 
 OPTIONS = (("-std=c99", "-O2"), ("-std=gnu99", "-O3", "-march=native"))
 
@@ -98,7 +98,7 @@ def of_plants(steps: int, folder: Path) -> int:
     total = 0
     for name, (plant, hand) in PLANTS.items():
         program, rows = plant_program(plant, PERIOD, hand), hand_and_law(hand, steps, 5)
-        header, text = plant_header(program, about=[name]), plant_module(program, about=[name])
+        header, text = plant_header(program, name), plant_module(program)
         alone = folder / name
         alone.mkdir()
         library = compiled_c(plant_in_c(program, name), alone)

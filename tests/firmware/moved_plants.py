@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.loop.plant import STATE_SIZE, WORK, Plant
-from zwidth.machine.firmware.plant import Hand, plant_header
+from zwidth.machine.firmware.c99 import C99, KEYWORDS
+from zwidth.machine.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
+from zwidth.machine.firmware.plant import Hand, laid_out
 from zwidth.machine.firmware.program import Program
 
 PERIOD = 0.001
@@ -41,11 +43,64 @@ def hand_and_law(hand: Hand, rows: int, seed: int) -> Array:
     return np.stack([force, push] + ([anchor, speed] if hand == "anchored" else []), 1)
 
 
+def plant_header(program: Program, name: str) -> str:
+    """The C99 header of such a program: `plant_state`, `plant_init`, `plant_step`.
+
+    `plant_step(&s, …)` takes what the program's parameters are called, in that order.
+    """
+    c = C99(program, KEYWORDS | {name}, prefix=name)
+    body = c.lines()
+    functions = c.function_lines()
+    state, work, places, begin = laid_out(program)
+    given = "".join(f", double {v.hint}" for v in program.parameters)
+    upper = name.upper()
+    lines = [
+        f"#ifndef {upper}_H",
+        f"#define {upper}_H",
+        "",
+        "#include <math.h>",
+        "#include <stdint.h>",
+        "",
+        rounded("double"),
+        DOUBLE,
+        "",
+        UNCONTRACTED,
+        "",
+        "/* what is where in state[] */",
+        *(f"#define {upper}_{place} {k}  /* {meaning} */" for k, place, meaning in places),
+        "",
+        f"typedef struct {{ double state[{state}]; double work[{work}]; }} {name}_state;",
+        "",
+        *c.table_lines(),
+        *c.helper_lines(),
+        "",
+        *functions,
+        "/* At rest at this position, no force, no energy counted. */",
+        f"static inline void {name}_init({name}_state *s, double position)",
+        "{",
+        f"    for (int k = 0; k < {state}; k += 1) {{ s->state[k] = 0.0; }}",
+        f"    for (int k = 0; k < {work}; k += 1) {{ s->work[k] = 0.0; }}",
+        *(f"    s->state[{upper}_{place}] = position;" for place in begin),
+        "}",
+        "",
+        "/* One period under the law's force, which opposes penetration, and the hand's push. */",
+        f"static inline void {name}_step({name}_state *s{given})",
+        "{",
+        *body,
+        "}",
+        "",
+        AS_BEFORE,
+        "",
+        "#endif",
+    ]
+    return "\n".join(lines) + "\n"
+
+
 def plant_in_c(program: Program, name: str) -> str:
     count = len(program.parameters)
     state, work = (cells.size for cells in program.cells)
     given = "".join(f", in[k * {count} + {i}]" for i in range(count))
-    return f"""{plant_header(program, name=name, about=[name])}
+    return f"""{plant_header(program, name)}
 void {name}_rows(const double *in, int rows, double *cells, double *out)
 {{
     {name}_state s;

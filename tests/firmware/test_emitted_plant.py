@@ -73,7 +73,7 @@ def test_the_header_moves_it_as_the_simulator_does(
 
 
 def test_the_module_moves_it_as_the_simulator_does(known: dict[str, Known], tmp_path: Path) -> None:
-    files = {f"{n}.mjs": plant_module(k.program, about=[n]) for n, k in known.items()}
+    files = {f"{n}.mjs": plant_module(k.program) for n, k in known.items()}
     given = {n: (k.rows, CELLS, STATE_SIZE) for n, k in known.items()}
     text = "".join(plant_in_javascript(n) for n in known)
     assert not differing(known, run_node(text, tmp_path, given, files))

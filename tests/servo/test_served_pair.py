@@ -6,6 +6,7 @@ from servo.played import Library, Played
 
 import zwidth as zw
 from zwidth.errors import InputError
+from zwidth.machine.servo import loop
 from zwidth.machine.servo import pair as module
 from zwidth.machine.servo.connection import CLOSED, SILENT, Placement
 from zwidth.machine.servo.devices.simulated import Simulated
@@ -34,8 +35,10 @@ def clock(monkeypatch):
             time[0], time[1] = time[0] + time[1], 0
         return 0
 
-    monkeypatch.setattr(module, "now", lambda: time[0])
-    monkeypatch.setattr(module, "until", until)
+    for place in (module, loop):
+        monkeypatch.setattr(place, "now", lambda: time[0])
+    monkeypatch.setattr(loop, "until", until)
+    monkeypatch.setattr(module, "await_sample", loop.await_sample.py_func)
     monkeypatch.setattr(module, "RealTime", lambda: RealTime(priority=0, memory=False))
     return time
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import Fraction, accepted, put, refused, without
+from . import TINY, Fraction, accepted, put, refused, without
 
 LOOP = {
     "damping_N_s_per_m": "1/2",
@@ -62,6 +62,21 @@ LIMIT = {"force_limit_N": "3/2"}
 GAIN = "more with each round"
 HOLD = motion([0, 0, 1, 1, 0], (0, 4, 3))
 PRESSED = motion([0, 3, 0, -1, 0, 1, 1, 0], (2, 7, 3), delay_s=1)
+
+# rounds 2 → 3 → 2: 9 − 1 − 2 b − 2 f_c = 5 in each, 1 + b + f_c on the way in; ½ (½)² stored at 1 − Δ/2
+HELD = law(
+    motion([1, 2, 3, 2], (1, 3, 3), coulomb_friction_N=1),
+    surface="none",
+    taps_N_per_m=[],
+    points_m_N=[[-1, -1], [1, 1], [2, 1], [3, 9]],
+)
+
+
+def beside(height: Any, **entries: Any) -> Any:
+    """The same with a force to smaller x over 2 m there: so much lower lies what is behind."""
+    hill = [[-4, 0], [-3, height], [-2, 0]]
+    return law(HELD, points_m_N=[*hill, [0, 0], [1, 1], [2, 1], [3, 9]], **entries)
+
 
 CASES = [
     taken(
@@ -177,13 +192,20 @@ CASES = [
     ),
     refused("points, beyond the last", law(motion([0, 5, 0], (0, 2, 3)), **POINTS), "none comes out", -75),
     taken(
-        "points, before the first",
-        3,
+        "points, before the first, ½ stored",
+        "5/2",
         law(
             motion([0, -1, 0], (0, 2, 3)), surface="none", taps_N_per_m=[], points_m_N=[["-1/2", -2], [0, 0]]
         ),
         contact="both sides",
     ),
+    taken("begun where friction holds", 15 - Fraction(5, 2) - Fraction(1, 8), HELD, contact="both sides"),
+    refused("begun where friction is less", put(HELD, {"loop.coulomb_friction_N": 1 - TINY}), "must begin"),
+    refused("begun inside a surface, held", law(HELD, surface="position"), "must begin"),
+    refused("taps, begun in a force", law(without(HELD, "law.points_m_N"), taps_N_per_m=[1]), "must begin"),
+    taken("begun high up", 15 - Fraction(5, 2) - Fraction(9, 8), beside(1), contact="both sides"),
+    refused("no more than was stored", beside(20), "none comes out", Fraction(100, 8) - Fraction(161, 8)),
+    refused("what the limit lets out", beside(20, force_limit_N=10), "none comes out", "-21/8"),
     # 1 + ρ Δq: 2 · (1 + ½) at 1 after 0
     taken("a force that grows with the way", 6, law(THERE, rate_per_m="1/2", **POINTS)),
     taken("clamped, where it would pull", 3 * 0 + 3, law(THERE, clamped=True)),
@@ -260,8 +282,8 @@ CASES = [
         law(motion([0, 2, 1, 0], (0, 3, 3)), rate_per_m=2, **POINTS),
     ),
     taken(
-        "before the first point",
-        3,
+        "before the first point, 5/12 stored",
+        3 - Fraction(5, 12),
         law(
             motion([0, -3, 0], (0, 2, 3)), surface="none", taps_N_per_m=[], points_m_N=[[-1, "-10/3"], [0, 0]]
         ),

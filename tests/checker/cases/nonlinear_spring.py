@@ -44,6 +44,8 @@ PAID_ON = {  # the same where g falls faster than that on one side
     "larger x": put(PAID, {"law.points_m_N": [[-1, 0], [0, "-9/4"], [1, 0]]}),
     "smaller x": put(PAID, {"law.points_m_N": [[0, 0], [1, "9/4"], [2, 0]]}),
 }
+# g rises by 2, falls by 1, rises by 2: each rise alone asks for 3/2, both at once for 2.073
+TWICE = put(PAID, {"law.points_m_N": [[0, 0], [1, "9/4"], [2, "3/2"], [3, "15/4"]]})
 DAMPING, FRICTION = "damping is below", "below half a count"
 RUNS_AWAY = pull([[0, 0], [1, -2]], "1.999")
 BOTH = {"nonlinear spring": RISING, "endless pull": RUNS_AWAY}
@@ -84,6 +86,13 @@ CASES = [
             DAMPING,
             "pays for its rises",
         )
+    ),
+    accepted("friction pays for two rises", put(TWICE, {"loop.coulomb_friction_N": "87/20"}), "pays for its"),
+    refused("friction pays for one of two", put(TWICE, {"loop.coulomb_friction_N": "17/4"}), DAMPING),
+    refused(
+        "too many digits to be added up",
+        put(PAID, {"law.points_m_N": [[i, f"{i * 10**99}/{10**99 + i}"] for i in range(99)]}),
+        "too many digits",
     ),
     refused("friction pays, behind a delay", put(PAID, {"loop.delay_s": "1/2"}), DAMPING),
     refused("friction pays, no damping", put(PAID, {"loop.damping_N_s_per_m": 0}), DAMPING),

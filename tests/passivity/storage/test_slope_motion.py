@@ -54,6 +54,19 @@ def test_a_centring_spring_is_decided_on_both_sides_of_its_limit(middle):
     assert taken(KNOB, steep, refuted.witness) == pytest.approx(refuted.witness.energy, rel=1e-6)
 
 
+def test_what_the_spring_stores_at_the_start_is_no_gain():
+    """A hand begins at 0, high above what lies beyond a hill: more comes out than that, ½ · 0.05 · 0.4 J."""
+    steep = LIMIT * Fraction("0.02") * Fraction("1.5")
+    spring = zw.NonlinearSpring(["-0.4", "-0.2", 0, "0.02"], [0, "0.05", 0, steep])
+    refuted = zw.check(KNOB, spring, iterate=False)
+    stored = 0.5 * 0.05 * 0.4
+    assert refuted.outcome == "active"
+    assert refuted.witness.positions[0] == pytest.approx(0, abs=1e-3)
+    energy = taken(KNOB, spring, refuted.witness)
+    assert energy > stored
+    assert energy - stored == pytest.approx(refuted.witness.energy, rel=1e-4)
+
+
 @pytest.mark.parametrize(
     ("delay", "share"), [("5e-4", "1.2"), ("2e-3", "1.2"), ("2e-4", "1.4"), ("1.2e-3", "1.2")]
 )

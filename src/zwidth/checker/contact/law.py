@@ -11,6 +11,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import NamedTuple
 
 from ..document.fields import Choice, Flag, Number, Read, Record, Words, numbers, pairs
@@ -26,7 +27,7 @@ from ..document.number import (
     STIFFNESS,
     increasing,
 )
-from ..document.refusal import Invalid, only_if
+from ..document.refusal import Invalid, only_if, spend
 
 MOST_TAPS = 50
 MOST_POINTS = 10_000
@@ -127,6 +128,24 @@ class Law(NamedTuple):
         if self.limit is not None:
             f = max(-self.limit, min(self.limit, f))
         return f
+
+    def stored(self, x: Fraction) -> Fraction:
+        """Φ(x) less its lowest value between the ends, Φ' the force of points, within the limit."""
+        spend(len(self.points), each=300)
+        most, places = self.limit, {x, *(place for place, _ in self.points)}
+        for (x0, f0), (x1, f1) in pairwise(self.points):
+            levels = (y for y in (0, most or 0, -(most or 0)) if (f0 < y) != (f1 < y))
+            places |= {x0 + (y - f0) / (f1 - f0) * (x1 - x0) for y in levels}
+        forces = {p: self._spring(p) for p in places}
+        if most is not None:
+            forces = {p: max(-most, min(most, f)) for p, f in forces.items()}
+        potential = lowest = here = Fraction(0)
+        for (x0, f0), (x1, f1) in pairwise(sorted(forces.items())):
+            potential += (f0 + f1) / 2 * (x1 - x0)
+            spend(3, potential.denominator.bit_length(), each=4)
+            lowest = min(lowest, potential)
+            here = potential if x1 == x else here
+        return here - lowest
 
     def averaged(self, average: Fraction, reading: Fraction) -> Fraction:
         """a_{k+1} from a_k and q_k."""

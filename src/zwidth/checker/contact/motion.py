@@ -123,10 +123,10 @@ CONTACT_MOTION = document(
 def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     """Energy the hand takes out over the motion, and by one more round of its cycle [J].
 
-    The motion begins at rest, with the reading 0 or less where the law gives no force; against a law that
-    acts at every position, where Coulomb friction holds the force.  It ends wherever it ends.  `repeats`
-    names the part that is done `times` times; it must return to where it began.  It keeps to the bounds that
-    are stated.
+    The motion begins at rest, with the reading 0 or less where the law gives no force; on a spring by points
+    that acts at every position where Coulomb friction holds the force, and what that stores at
+    x − Δ/2 is taken off.  It ends wherever it ends.  `repeats` names the part that is done `times` times; it
+    must return to where it began.  It keeps to the bounds that are stated.
     """
     losses, law, x = losses_of(told.loop), law_of(told.law), told.positions
     given = switch_positions(told, losses.part < 1)
@@ -135,9 +135,9 @@ def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     first, last, times = closed_cycle(told.repeats, x)
     taps = law.memory + 1
     start = losses.resolution * (x[0] // losses.resolution)
-    both_sides = law.surface == "none"
-    held = max(friction for friction, _ in losses.models) if both_sides else Fraction(0)
-    if (start > 0 and not both_sides) or abs(law.force([start] * taps)) > held:
+    anywhere = law.surface == "none" and bool(law.points)
+    held = max(friction for friction, _ in losses.models) if anywhere else Fraction(0)
+    if (start > 0 and not anywhere) or abs(law.force([start] * taps)) > held:
         raise Invalid("the motion must begin at rest where the law gives no force, or friction holds it")
 
     resting = Fraction(0) if law.surface == "penetration" else start
@@ -153,7 +153,7 @@ def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
                 out -= newer * late + losses.lost(late, 1 - losses.part)
         return out
 
-    energy = run(0, first)
+    energy = run(0, first) - (law.stored(x[0] - losses.resolution / 2) if anywhere else 0)
     done, before, gain = 0, None, Fraction(0)
     while done < times and before != state:
         if (done + 1) * (last - first) > MOST_SAMPLES:

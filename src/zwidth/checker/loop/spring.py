@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise
+from math import ceil
 
 from ..document.fields import Read, Record, document, pairs
-from ..document.number import FORCE_AT, about, increasing
+from ..document.number import FORCE_AT, about, common_scale, increasing
 from ..document.refusal import Invalid, spend
 from .loop import DEVICE, LOOP, MOST_DELAY, loop_of
 
@@ -97,16 +98,19 @@ def _paid(points: list[tuple[Fraction, Fraction]], drag: Fraction, left: Fractio
     """Whether friction pays for each rise of g(x) = φ(x) − drag · x to larger x; beyond the end g falls."""
     points = [(x, f - drag * x) for x, f in points]
     values = [g for _, g in points]
-    far = (max(values) - min(values)) / drag + 1  # where g is below all that it was
+    far = ceil((max(values) - min(values)) / drag) + 1  # where g is below all that it was
     points.append((points[-1][0] + far, points[-1][1] - drag * far))
-    begins = [i for i, ((_, g0), (_, g1)) in enumerate(pairwise(points)) if g1 > g0]
-    spend(len(begins) * len(points), each=40)
+    per_place, per_force = common_scale(x for x, _ in points), common_scale([g for _, g in points] + [left])
+    x, g = [int(x * per_place) for x, _ in points], [int(g * per_force) for _, g in points]
+    ways, spare = [b - a for a, b in pairwise(x)], int(left * per_force)
+    begins = [i for i, (g0, g1) in enumerate(pairwise(g)) if g1 > g0]
+    spend(len(begins) * len(points), max(map(int.bit_length, g)), max(map(int.bit_length, x)), each=2)
     for i in begins:
-        level, owed = points[i][1] + left, Fraction(0)
-        for (x0, g0), (x1, g1) in pairwise(points[i:]):
-            if g1 < level < g0 and owed + (g0 - level) ** 2 * (x1 - x0) / (g0 - g1) / 2 > 0:
+        level, owed = g[i] + spare, 0  # twice
+        for way, (g0, g1) in zip(ways[i:], pairwise(g[i:]), strict=True):
+            if g1 < level < g0 and owed * (g0 - g1) + (g0 - level) ** 2 * way > 0:
                 return False
-            owed += ((g0 + g1) / 2 - level) * (x1 - x0)
+            owed += (g0 + g1 - 2 * level) * way
             if owed > 0:
                 return False
     return True

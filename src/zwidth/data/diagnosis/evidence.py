@@ -197,7 +197,7 @@ def gather(
     xs[0] = xs[0] or np.finfo(float).tiny
     X = complex(xs[0])
     delay = _delay(known, fitted, commanded is not None)
-    motion = _Motion(xs, vibration.angular, file.loop_period, vibration.frequency, period)
+    motion = Motion(xs, vibration.angular, file.loop_period, vibration.frequency, period)
     held, needed = motion.phasors(force), motion.needed(known)
     F = held * (1 if applied is not None else motion.late(delay))
     aims = (file.x - file.error)[file.steady]
@@ -207,8 +207,7 @@ def gather(
         supplied["differenced velocity"] = pulse
     lost = None
     if known.damping is not None:
-        viscous = np.pi * motion.omega * known.damping * float((np.abs(motion.orders * xs) ** 2).sum())
-        lost = viscous + 4 * (known.coulomb or 0.0) * abs(X)
+        lost = motion.viscous(known.damping) + 4 * (known.coulomb or 0.0) * abs(X)
     return Evidence(
         vibration=vibration,
         loop_period=file.loop_period,
@@ -285,7 +284,7 @@ def _accounted(file: _Aligned, told: Stated) -> Stated:
     return replace(told, accounted=min(between.by_delay, between.by_damper, between.by_rate))
 
 
-class _Motion(NamedTuple):
+class Motion(NamedTuple):
     """The motion as phasors of the frequency and its harmonics, and what a held force does along it."""
 
     xs: NDArray[np.complex128]
@@ -321,6 +320,10 @@ class _Motion(NamedTuple):
     def work(self, force: NDArray[np.complex128]) -> float:
         """[J] in a cycle, −π Σ n Im(F_n X_n*)."""
         return float(-np.pi * (self.orders * np.imag(force * np.conj(self.xs))).sum())
+
+    def viscous(self, damping: float) -> float:
+        """[J] that a damper takes in a cycle, π ω b Σ |n X_n|²."""
+        return float(np.pi * self.omega * damping * (np.abs(self.orders * self.xs) ** 2).sum())
 
     def held(self, asked: NDArray[np.complex128]) -> NDArray[np.complex128]:
         """The same through the hold."""
@@ -384,7 +387,7 @@ def _delay(known: Known, fitted: _Fitted, commanded: bool) -> float:
     return known.delay
 
 
-def _terms(fitted: _Fitted, motion: _Motion, delay: float, seen: Array) -> dict[str, float]:
+def _terms(fitted: _Fitted, motion: Motion, delay: float, seen: Array) -> dict[str, float]:
     """[J] in a cycle by each term."""
     found, between = fitted.law, fitted.drive
     supplied = dict.fromkeys(TERMS, 0.0)

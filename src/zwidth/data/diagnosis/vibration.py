@@ -277,17 +277,11 @@ def _stretch(moving: Array, period: float, block: float, large: float) -> slice:
     if blocks < 3:
         return slice(0, moving.size)
     rms = moving[: blocks * size].reshape(blocks, size).std(axis=1)
-    strong = rms > np.percentile(rms, large) / 3
-    best, start = (0, 0), None
-    for k, on in enumerate([*strong, False]):
-        if on and start is None:
-            start = k
-        elif not on and start is not None:
-            if k - start >= best[1] - best[0]:
-                best = (start, k)
-            start = None
-    stop = moving.size if best[1] == blocks else best[1] * size
-    return slice(best[0] * size, stop)
+    strong = np.flatnonzero(rms > np.percentile(rms, large) / 3)
+    runs = np.split(strong, np.flatnonzero(np.diff(strong) > 1) + 1)
+    longest = max(reversed(runs), key=len).tolist() or [0, -1]
+    stop = moving.size if longest[-1] + 1 == blocks else (longest[-1] + 1) * size
+    return slice(longest[0] * size, stop)
 
 
 def _without_line(y: Array) -> Array:

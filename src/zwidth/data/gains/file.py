@@ -6,7 +6,8 @@ A small file, and nothing in it is obeyed: YAML is read as text and lists alone,
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -96,9 +97,9 @@ def read_table(path: str | Path) -> GainTable:
     text = text_of(path, name, "gain file", "file", lambda: f"there is no file {name}{did_you_mean(path)}")
     refuse_settings(text, name)
     suffix = path.suffix.lower()
-    read = {".json": _json, ".toml": _toml}.get(suffix, _yaml)
+    read: Callable[..., Any] | None = {".json": json.loads, ".toml": tomllib.loads}.get(suffix)
     try:
-        content = read(text)
+        content = _yaml(text) if read is None else read(text, parse_float=Decimal)
     except RecursionError:
         raise InputError(f"{name}: nested too deeply for a gain file") from None
     except ValueError as error:
@@ -143,16 +144,6 @@ def _both(first: Any, second: Any, key: str, line: int) -> Any:
     for name, value in second.items():
         found[name] = _both(found[name], value, name, line) if name in found else value
     return found
-
-
-def _json(text: str) -> Any:
-    return json.loads(text, parse_float=Decimal)
-
-
-def _toml(text: str) -> Any:
-    import tomllib
-
-    return tomllib.loads(text, parse_float=Decimal)
 
 
 def _kind(value: object) -> str:

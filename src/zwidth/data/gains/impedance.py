@@ -55,17 +55,13 @@ class BorneImpedance(Saved):
     found: PostureMap
     share: Fraction
 
-    def report(self) -> Iterator[str]:
-        """What was found, and what that assumes."""
-        return self._head()
-
     def to_yaml(self) -> str:
         """As text: below the names of the file, units and what was found in comments."""
         tree: Tree = {}
         place = place_of(tree, self.asked.keys)
         place["stiffness"] = dict(self._groups(self.stiffness, self.asked.stiffness, ("N/m", "N*m/rad")))
         place["damping"] = dict(self._groups(self.factors, self.asked.factors, ("factor", "factor")))
-        return text_of(tree, list(self._head()))
+        return text_of(tree, list(self.report()))
 
     @property
     def size(self) -> int:
@@ -85,7 +81,8 @@ class BorneImpedance(Saved):
                 },
             )
 
-    def _head(self) -> Iterator[str]:
+    def report(self) -> Iterator[str]:
+        """What was found, and what that assumes."""
         asked = self.found.question
         count, part = self.found.tried, shown(self.share, "%", 6)
         yield (

@@ -95,10 +95,6 @@ class PassiveGains(Saved):
         """(law of the file, law that is proved) of each joint."""
         return tuple(zip(self.asked.joints, (joint.law for joint in self.joints), strict=True))
 
-    def report(self) -> Iterator[str]:
-        """What is promised, and what that assumes."""
-        return self._head()
-
     def to_yaml(self) -> str:
         """As text: below the names of the file, units and what was proved in comments."""
         return parameter_file(
@@ -108,10 +104,11 @@ class PassiveGains(Saved):
             ],
             self.rate,
             self.asked.manager,
-            list(self._head()),
+            list(self.report()),
         )
 
-    def _head(self) -> Iterator[str]:
+    def report(self) -> Iterator[str]:
+        """What is promised, and what that assumes."""
         yield (
             "Gains of joints, each proved passive by itself: no motion of a hand that moves the joint takes "
             f"energy out, as long as it damps at least {shown(self.share, '%', 6)} of what was given. "

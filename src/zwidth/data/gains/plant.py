@@ -17,6 +17,7 @@ or as published for the family, and then they were measured on no arm of the rea
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -268,8 +269,5 @@ def _servo(name: str, table: Mapping[str, Any]) -> Servo:
 
 @cache
 def _data() -> Mapping[str, Any]:
-    import tomllib  # both on first use, to keep `import zwidth` fast
-    from pathlib import Path
-
     text = Path(__file__).with_name("families.toml").read_text(encoding="utf-8")
     return tomllib.loads(text, parse_float=Decimal)

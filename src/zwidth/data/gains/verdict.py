@@ -48,8 +48,9 @@ def check_gains(
     ----------
     gains
         As `read_gains` reads them.
-    plant, rate, delay, drive_rate, ideal_drive, compensated
-        As `ArmGains.pairs` takes them; what is not given is the family's, and is said.
+    given, named
+        As of `ArmGains.pairs`: plant, rate, delay, drive_rate, ideal_drive, compensated; what is not given
+        is the family's, and is said.
 
     Raises
     ------

@@ -127,7 +127,7 @@ class Recording:
             assert self.period is not None
             time = (done + np.arange(columns["position"].size)) * self.period
         else:
-            time = _seconds(columns["time"], self.table.origin[0], self.meaning.factors["time"])
+            time = seconds(columns["time"], self.table.origin[0], self.meaning.factors["time"])
         others = (
             _times(columns[q], self.meaning.factors[q]) if q in columns else None
             for q in ("position", "hand_force", "actuator_force")
@@ -210,12 +210,13 @@ def _origin(time: NDArray[Any], factor: float) -> Any:
     return first if abs(float(first)) * factor > DATE else time.dtype.type(0)
 
 
-def _seconds(time: NDArray[Any], origin: Any, factor: float) -> Array:
+def seconds(time: NDArray[Any], origin: Any, factor: float) -> Array:
+    """Stamps from an origin on [s]; NaN of a date that is none."""
     if time.dtype.kind == "M":
         steps = (time - origin).astype("timedelta64[ns]")
-        seconds: Array = steps.astype(np.float64) / 1e9
-        seconds[np.isnat(steps)] = np.nan
-        return seconds
+        since: Array = steps.astype(np.float64) / 1e9
+        since[np.isnat(steps)] = np.nan
+        return since
     if time.dtype.kind in "iu":
         return _times(time.astype(np.int64) - np.int64(origin), factor)
     return _times(time - origin if origin else time, factor)

@@ -9,6 +9,7 @@ says so in its first packet; where that is lost, its stamp that goes back says i
 
 from __future__ import annotations
 
+from binascii import crc_hqx
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -175,17 +176,6 @@ FIXED, EACH = 11, 4
 LARGEST = HEAD + 255 + END
 
 
-def _table() -> NDArray[np.uint16]:
-    rest = np.arange(256, dtype=np.uint32) << 8
-    for _ in range(8):
-        rest = np.where(rest & 0x8000, (rest << 1) ^ 0x1021, rest << 1) & 0xFFFF
-    return rest.astype(np.uint16)
-
-
-_OF_A_BYTE = _table()
-"""What a byte adds to the checksum."""
-
-
 class Found(NamedTuple):
     starts: Indices
     sizes: Indices
@@ -206,19 +196,18 @@ def find(data: Bytes, *, last: bool) -> Found:
     whole = syncs + sizes <= data.size
     begun = np.concatenate([syncs[~whole], begun])
     syncs, sizes = syncs[whole], sizes[whole]
-    right = np.zeros(syncs.size, dtype=bool)
-    for size in np.unique(sizes):
-        those = np.flatnonzero(sizes == size)
-        right[those] = _checked(data, syncs[those], int(size))
-    starts, sizes = _apart(syncs[right], sizes[right])
-    end = int(starts[-1] + sizes[-1]) if starts.size else 0
+    kept, end, held = np.zeros(syncs.size, dtype=bool), 0, data.tobytes()
+    for k, (start, size) in enumerate(zip(syncs.tolist(), sizes.tolist(), strict=True)):
+        # what begins within the one before are bytes of that packet which look like another one
+        if start >= end and _is_right(held[start : start + size]):
+            kept[k], end = True, start + size
     begun = begun[begun >= end]
     rest = data.size
     if not last and begun.size:
         rest = int(begun.min())
     elif not last and data.size > end and data[-1] == SYNC[0]:
         rest = data.size - 1
-    return Found(starts, sizes, rest)
+    return Found(syncs[kept], sizes[kept], rest)
 
 
 def number(data: Bytes, at: Indices, size: int) -> Indices:
@@ -235,24 +224,9 @@ def signed(data: Bytes, at: Indices, size: int) -> Indices:
     return np.asarray(value - ((value >> (8 * size - 1)) << (8 * size)))
 
 
-def _checked(data: Bytes, starts: Indices, size: int) -> NDArray[np.bool_]:
-    """Which of the packets of one size have the right checksum."""
-    rest = np.full(starts.size, 0xFFFF, dtype=np.uint16)
-    for i in range(size - END):
-        rest = (rest << 8) ^ _OF_A_BYTE[(rest >> 8) ^ data[starts + i]]
-    return np.asarray(rest == number(data, starts + size - END, 2))
-
-
-def _apart(starts: Indices, sizes: Indices) -> tuple[Indices, Indices]:
-    """Without those that begin within the one before: bytes of a packet that look like another one."""
-    if starts.size < 2 or (starts[1:] >= starts[:-1] + sizes[:-1]).all():
-        return starts, sizes
-    kept, end = [], 0
-    for i, (start, size) in enumerate(zip(starts.tolist(), sizes.tolist(), strict=True)):
-        if start >= end:
-            kept.append(i)
-            end = start + size
-    return starts[kept], sizes[kept]
+def _is_right(packet: bytes) -> bool:
+    """Whether a packet has the right checksum."""
+    return crc_hqx(packet[:-END], 0xFFFF) == int.from_bytes(packet[-END:], "little")
 
 
 # What a law tells of itself: the text of a packet, its numbers as they stand in the law's header.

@@ -27,11 +27,12 @@ from math import exp, expm1, log
 from typing import Literal, NamedTuple, TypeVar, get_args
 
 from zwidth.errors import InputError
+from zwidth.native.compiled import Array
 
 Rule = Literal["ramp", "bilinear", "backward"]
 RULES: tuple[str, ...] = get_args(Rule)
 
-Number = TypeVar("Number", float, Fraction)
+Number = TypeVar("Number", float, Fraction, Array)
 
 
 class Solid(NamedTuple):

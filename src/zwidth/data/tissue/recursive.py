@@ -23,7 +23,7 @@ import numpy as np
 from zwidth.data.logs import Finding
 from zwidth.data.tissue import recursion
 from zwidth.data.tissue.findings import passed_over
-from zwidth.data.tissue.first_order import RULES, Rule, Solid, as_rule, coefficients
+from zwidth.data.tissue.first_order import RULES, Rule, Solid, as_rule, coefficients, solid_of_five
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 from zwidth.passivity.formulas.hypotheses import nonnegative, number
@@ -81,11 +81,6 @@ class RecursiveSolid:
         Bound of μ0 and of μ1 [N/m; N·m/rad]; None: no bound.
     relaxation_times
         Bounds of η1/μ1 [s]; None: T/10 to 100 000 T.
-
-    Raises
-    ------
-    InputError
-        If an argument is not of these.
 
     Notes
     -----
@@ -338,9 +333,7 @@ def track_five_parameters(
     out = np.full((6, x.size), np.nan)
     p = (initial_covariance * np.eye(5)).ravel()
     recursion.run_five(np.zeros(5), p, np.zeros(10), x, f, keep, out)
-    a1, b1, b3 = out[0], out[2], out[4]
-    viscous = a1 * b1 - b1 - b3
     with np.errstate(divide="ignore", invalid="ignore"):
-        solid = (b1 + b3) / a1, 2 * viscous / (a1 * (2 - a1)), viscous * period / a1**2
+        solid = solid_of_five(out[0], out[2], out[4], period)
     names = ("a1", "a2", "b1", "b2", "b3", "trace", "stiffness", "branch_stiffness", "branch_damping")
     return dict(zip(names, (*out, *solid), strict=True))

@@ -8,7 +8,6 @@ Motor and handle with a transmission between them move by the series of `loop.tw
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, Literal
 
 from zwidth.errors import InputError
@@ -28,12 +27,7 @@ from zwidth.loop.plant import (
 from zwidth.loop.step import advance, book
 from zwidth.loop.two_bodies import TwoMasses
 from zwidth.loop.two_masses import advance_two
-from zwidth.machine.firmware.c99 import C99
-from zwidth.machine.firmware.c99 import KEYWORDS as OF_C
-from zwidth.machine.firmware.header import AS_BEFORE, DOUBLE, UNCONTRACTED, rounded
-from zwidth.machine.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
-from zwidth.machine.firmware.javascript import JavaScript
-from zwidth.machine.firmware.printer import comment
+from zwidth.machine.firmware.javascript import KEYWORDS, JavaScript
 from zwidth.machine.firmware.program import Cells, Program, Variable
 from zwidth.machine.firmware.specialise import specialised
 from zwidth.native.compiled import Array
@@ -151,7 +145,7 @@ def plant_program(plant: Plant | TwoMasses | None, period: float | None, hand: H
     return specialised(one_period, (*cells, numbers, *given), _APART)
 
 
-def _laid_out(program: Program) -> tuple[int, int, list[tuple[int, str, str]], list[str]]:
+def laid_out(program: Program) -> tuple[int, int, list[tuple[int, str, str]], list[str]]:
     """How long state and work are, what is where in the state, and what of it stands where a touch begins."""
     state, work = (cells.size for cells in program.cells)
     of_two = () if state == STATE_SIZE else enumerate(_PLACES_OF_TWO, STATE_SIZE)
@@ -159,68 +153,13 @@ def _laid_out(program: Program) -> tuple[int, int, list[tuple[int, str, str]], l
     return state, work, places, [place for _, place, _ in places if place in ("POSITION", "MOTOR")]
 
 
-def plant_header(program: Program, *, name: str = "plant", about: Sequence[str] = ()) -> str:
-    """The C99 header of such a program: `plant_state`, `plant_init`, `plant_step`.
-
-    `plant_step(&s, …)` takes what the program's parameters are called, in that order.
-    """
-    c = C99(program, OF_C | {name}, prefix=name)
-    body = c.lines()
-    functions = c.function_lines()
-    state, work, places, begin = _laid_out(program)
-    given = "".join(f", double {v.hint}" for v in program.parameters)
-    upper = name.upper()
-    lines = [
-        *comment(about),
-        f"#ifndef {upper}_H",
-        f"#define {upper}_H",
-        "",
-        "#include <math.h>",
-        "#include <stdint.h>",
-        "",
-        rounded("double"),
-        DOUBLE,
-        "",
-        UNCONTRACTED,
-        "",
-        "/* what is where in state[] */",
-        *(f"#define {upper}_{place} {k}  /* {meaning} */" for k, place, meaning in places),
-        "",
-        f"typedef struct {{ double state[{state}]; double work[{work}]; }} {name}_state;",
-        "",
-        *c.table_lines(),
-        *c.helper_lines(),
-        "",
-        *functions,
-        "/* At rest at this position, no force, no energy counted. */",
-        f"static inline void {name}_init({name}_state *s, double position)",
-        "{",
-        f"    for (int k = 0; k < {state}; k += 1) {{ s->state[k] = 0.0; }}",
-        f"    for (int k = 0; k < {work}; k += 1) {{ s->work[k] = 0.0; }}",
-        *(f"    s->state[{upper}_{place}] = position;" for place in begin),
-        "}",
-        "",
-        "/* One period under the law's force, which opposes penetration, and the hand's push. */",
-        f"static inline void {name}_step({name}_state *s{given})",
-        "{",
-        *body,
-        "}",
-        "",
-        AS_BEFORE,
-        "",
-        "#endif",
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def plant_module(program: Program, *, about: Sequence[str] = ()) -> str:
+def plant_module(program: Program) -> str:
     """The ES module of such a program: `init`, `step`, and where in `state` everything is."""
-    js = JavaScript(program, OF_JAVASCRIPT)
-    state, work, places, begin = _laid_out(program)
+    js = JavaScript(program, KEYWORDS)
+    state, work, places, begin = laid_out(program)
     body = js.lines()
     functions = js.function_lines()
     lines = [
-        *comment(about),
         *(f"export const {place} = {k}; // {meaning}" for k, place, meaning in places),
         "",
         *js.table_lines(),

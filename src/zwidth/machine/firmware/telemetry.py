@@ -10,7 +10,7 @@ import logging
 from os import PathLike
 from pathlib import Path
 from threading import Event, Lock, Thread
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
@@ -21,10 +21,6 @@ from zwidth.data.logs.table import readable
 from zwidth.data.logs.telemetry import FORMAT, About, Decoder, Samples, samples_of
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 
 PHASES = ("waiting", "serving", "ended")
 """Force 0 and no law yet; the law's force; force 0 for good."""

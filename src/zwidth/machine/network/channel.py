@@ -20,20 +20,20 @@ import random
 import struct
 import time
 import zlib
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
 from itertools import count
-from types import TracebackType
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.links import Packet, Schedule
+from zwidth.machine.servo.connection import Closing
 
 LARGEST = 1400
 """Bytes of a datagram that pass every usual network in one piece."""
 
 
-class Channel(ABC):
+class Channel(Closing):
     """Both directions between two ends; closed by `close` or at the end of a ``with``."""
 
     @abstractmethod
@@ -47,14 +47,6 @@ class Channel(ABC):
     @abstractmethod
     def close(self) -> None:
         """Give back what the system lent; a second time does nothing."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 _HEAD = struct.Struct("<4sddd")

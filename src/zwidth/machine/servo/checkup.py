@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -103,7 +103,6 @@ def doctor(
     duration: RealLike = 60,
     sample_period: RealLike | None = None,
     core: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
 ) -> Checkup:
     """Run a loop that does nothing but be on time, and say how late it was, what that costs, and what helps.
 
@@ -118,8 +117,6 @@ def doctor(
         T ≥ 20e-6 [s]; by default that of the device, or 1 ms.
     core
         Number of the core that the loop keeps to; None for any.
-    progress
-        Is told (seconds done, in all); by default a bar on standard error.
 
     Raises
     ------
@@ -147,11 +144,8 @@ def doctor(
     elif environment is not None:
         raise InputError("what lateness costs an environment depends on the device: give one as well")
     before = Moment.now()
-    if progress is None:
-        with progress_bar("seconds") as bar:
-            measured = measure_lateness(float(period), float(seconds), core=core, progress=bar)
-    else:
-        measured = measure_lateness(float(period), float(seconds), core=core, progress=progress)
+    with progress_bar("seconds") as bar:
+        measured = measure_lateness(float(period), float(seconds), core=core, progress=bar)
     best = measured.real_time or measured.ordinary
     return Checkup(
         period,

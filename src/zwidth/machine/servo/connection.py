@@ -14,11 +14,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
-from types import TracebackType
-from typing import ClassVar, Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple, Self, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.posix import Bytes
@@ -67,6 +65,9 @@ exchanged = compiled
 """Of ``f(memory, inbox, outbox) -> status``, which the loop is given."""
 
 
+Question = Callable[[Array, Bytes, Bytes], int]
+
+
 class Opened(NamedTuple):
     """What a compiled connection works on; allocated once."""
 
@@ -78,6 +79,20 @@ class Opened(NamedTuple):
 def blank(own: int, inbox: int = 512, outbox: int = 512) -> Opened:
     """Memory with room for `own` numbers from OWN on, and for so many bytes in and out."""
     return Opened(np.zeros(OWN + own), np.zeros(inbox, np.uint8), np.zeros(outbox, np.uint8))
+
+
+class Closing(ABC):
+    """What is closed at the end of a ``with``."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @abstractmethod
+    def close(self) -> object:
+        """Give back what was taken; may be called again."""
 
 
 class Connection(ABC):
@@ -129,8 +144,8 @@ class CompiledConnection(Connection):
     Neither may block, allocate or raise.
     """
 
-    measure: ClassVar[Callable[[Array, NDArray[np.uint8], NDArray[np.uint8]], int]]
-    apply: ClassVar[Callable[[Array, NDArray[np.uint8], NDArray[np.uint8]], int]]
+    measure: ClassVar[Question]
+    apply: ClassVar[Question]
 
     @abstractmethod
     def open(self, sample_period: float) -> Opened:
@@ -159,20 +174,37 @@ class LibraryConnection(Connection):
         """Give a force along the device's axis [N; N·m]; what became of it."""
 
 
-def ask_library(connection: LibraryConnection, until: int) -> tuple[int, float]:
-    """As `measure`; an error of the system, such as a cable that is out, is a line that has closed."""
-    try:
-        return connection.measure(until)
-    except OSError:
-        return CLOSED, nan
+def reach(connection: Connection, sample_period: float) -> Opened:
+    """Open a connection of either kind; what its questions work on."""
+    if isinstance(connection, CompiledConnection):
+        return connection.open(sample_period)
+    cast(LibraryConnection, connection).open(sample_period)
+    return blank(0, 1, 1)
 
 
-def give_library(connection: LibraryConnection, force: float) -> int:
-    """As `apply`, and as `ask_library`."""
-    try:
-        return connection.apply(force)
-    except OSError:
-        return CLOSED
+def questions(connection: Connection) -> tuple[Question, Question]:
+    """`measure` and `apply` as a compiled connection has them, of either kind.
+
+    Of a library an error of the system, such as a cable that is out, is a line that has closed.
+    """
+    if isinstance(connection, CompiledConnection):
+        return type(connection).measure, type(connection).apply
+    library = cast(LibraryConnection, connection)
+
+    def measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
+        try:
+            status, memory[READING] = library.measure(int(memory[UNTIL]))
+        except OSError:
+            status, memory[READING] = CLOSED, nan
+        return status
+
+    def apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
+        try:
+            return library.apply(float(memory[FORCE]))
+        except OSError:
+            return CLOSED
+
+    return measure, apply
 
 
 def seconds_of(duration: RealLike) -> Exact:
@@ -207,13 +239,7 @@ class Placement(Parametric):
 
     @classmethod
     def read(cls, table: Table, motion: str) -> Placement:
-        """From the keys origin and sense of a table.
-
-        Raises
-        ------
-        InputError
-            If one has a value it cannot have.
-        """
+        """From the keys origin and sense of a table."""
         found = {}
         for key, quantity in (("origin", GLOSSARY["position"]), ("sense", plain("sense", "1 or -1"))):
             if key in table.values:
@@ -226,7 +252,7 @@ class Placement(Parametric):
             return cls(found.get("origin", 0.0), int(found.get("sense", 1)))
 
 
-class Axis:
+class Axis(Closing):
     """One axis of a device that is reached, at a period T [s], until it is closed; asked from Python.
 
     Sample by sample positions and forces along the x of a placement, of a compiled connection and of one of a
@@ -238,24 +264,13 @@ class Axis:
         self, connection: CompiledConnection | LibraryConnection, placement: Placement, sample_period: float
     ) -> None:
         self.connection, self.placement, self.period = connection, placement, sample_period
-        self._opened: Opened | None = None
-        if isinstance(connection, CompiledConnection):
-            self._opened = connection.open(sample_period)
-            self._at_first = self._opened.memory.copy()
-        else:
-            connection.open(sample_period)
-
-    def __enter__(self) -> Axis:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, raised: BaseException | None, where: TracebackType | None
-    ) -> None:
-        self.close()
+        self._measure, self._apply = questions(connection)
+        self._opened = reach(connection, sample_period)
+        self._at_first = self._opened.memory.copy()
 
     def begin(self) -> None:
         """The next sample is number 0: of a simulated device the script begins anew."""
-        if self._opened is not None and self.connection.samples is not None:
+        if self.connection.samples is not None:
             self._opened.memory[:] = self._at_first
 
     def measure(self, k: int, until: int, late: float = 0.0) -> tuple[int, float]:
@@ -263,26 +278,15 @@ class Axis:
 
         Waits until the clock `posix.now` reads `until` at most.
         """
-        if self._opened is None:
-            assert isinstance(self.connection, LibraryConnection)
-            status, reading = ask_library(self.connection, until)
-        else:
-            assert isinstance(self.connection, CompiledConnection)
-            memory = self._opened.memory
-            memory[TIME], memory[INDEX], memory[UNTIL] = k * self.period + late, k, until
-            status = type(self.connection).measure(*self._opened)
-            reading = float(memory[READING])
-        return status, self.placement.sense * (reading - self.placement.origin)
+        memory = self._opened.memory
+        memory[TIME], memory[INDEX], memory[UNTIL] = k * self.period + late, k, until
+        status = self._measure(*self._opened)
+        return status, self.placement.sense * (float(memory[READING]) - self.placement.origin)
 
     def give(self, force: float) -> int:
         """Give a force, positive along x [N; N·m]; what became of it."""
-        along = self.placement.sense * force
-        if self._opened is None:
-            assert isinstance(self.connection, LibraryConnection)
-            return give_library(self.connection, along)
-        assert isinstance(self.connection, CompiledConnection)
-        self._opened.memory[FORCE] = along
-        return type(self.connection).apply(*self._opened)
+        self._opened.memory[FORCE] = self.placement.sense * force
+        return self._apply(*self._opened)
 
     def let_go(self) -> None:
         """Force 0, said more than once."""

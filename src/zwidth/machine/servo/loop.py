@@ -22,7 +22,6 @@ from zwidth.machine.servo.connection import (
     FORCE,
     GOOD,
     INDEX,
-    READING,
     REFUSED,
     TIME,
     UNTIL,
@@ -31,8 +30,7 @@ from zwidth.machine.servo.connection import (
     Connection,
     LibraryConnection,
     Opened,
-    ask_library,
-    give_library,
+    questions,
 )
 from zwidth.machine.servo.cycle import (
     AWAKE_MOST,
@@ -175,21 +173,11 @@ def run(connection: Connection, opened: Opened, last: int, shared: Shared) -> No
 
     Over a library it is one in Python: whatever else runs in Python delays it.
     """
-    if isinstance(connection, CompiledConnection):
-        kind = type(connection)
-        _run(kind.measure, kind.apply, last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
-        return
-    library = cast(LibraryConnection, connection)
-
-    def measure(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
-        status, memory[READING] = ask_library(library, int(memory[UNTIL]))
-        return status
-
-    def apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
-        return give_library(library, memory[FORCE])
-
-    _find(opened.memory, shared)
-    _run.py_func(measure, apply, last, *opened, *shared)  # type: ignore[attr-defined]
+    loop = _run
+    if not isinstance(connection, CompiledConnection):
+        _find(opened.memory, shared)
+        loop = _run.py_func  # type: ignore[attr-defined]
+    loop(*questions(connection), last, *opened, *shared)  # type: ignore[arg-type]  # arrays of three kinds
 
 
 _BEAT = 0.02
@@ -259,7 +247,7 @@ class LoopThread:
     def _give_nothing(self) -> None:
         """Force 0 once more, after a connection in Python raised something."""
         try:
-            give_library(cast(LibraryConnection, self._connection), 0.0)
+            cast(LibraryConnection, self._connection).apply(0.0)
         except BaseException:
             self._connection.close()
 

@@ -27,15 +27,17 @@ from zwidth.machine.servo.connection import (
     GOOD,
     REFUSED,
     Axis,
+    Closing,
     CompiledConnection,
     LibraryConnection,
     Placement,
     seconds_of,
 )
+from zwidth.machine.servo.loop import await_sample, lateness
 from zwidth.machine.servo.pair_law import PairLaw
-from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, margin, most_awake, now, until
+from zwidth.machine.servo.posix import ANSWERED, MARGIN, check_supported, most_awake, now
 from zwidth.machine.servo.priority import Granted, RealTime
-from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured
+from zwidth.machine.servo.proving import SERVED_OUTCOMES, Measured, measured, shares
 from zwidth.machine.servo.report import PairServoReport, ending
 from zwidth.machine.servo.safety import (
     ASKED,
@@ -88,7 +90,7 @@ class _Side:
     loss: float = 0.0
 
 
-class PairServo:
+class PairServo(Closing):
     """Leader and follower, served.
 
     Parameters
@@ -147,13 +149,6 @@ class PairServo:
             ]
             opened.pop_all()
         atexit.register(self.close)
-
-    def __enter__(self) -> PairServo:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Force 0, then both are let go."""
-        self.close()
 
     def measure(self, duration: RealLike = _MEASURED) -> Measured:
         """Run the loop with force 0 for so long [s], and note what this machine and the links are like.
@@ -231,8 +226,6 @@ class PairServo:
 
     def report(self) -> PairServoReport:
         """What happened in the last run."""
-        late = np.array(self._late or [0.0])
-        p50, p99, most = np.quantile(late, [0.5, 0.99, 1.0], method="higher")
         leader, follower = self._sides
         return PairServoReport(
             title=self._title,
@@ -244,7 +237,7 @@ class PairServo:
             missed=self._missed,
             held=self._held,
             cut=self._cut,
-            lateness=(float(p50), float(p99), float(most)),
+            lateness=shares(np.array(self._late or [0.0])),
             energy_out=(leader.work, follower.work),
             friction_loss=(leader.loss, follower.loss),
             met_hardware=all(side.axis.connection.met_hardware for side in self._sides),
@@ -285,18 +278,14 @@ class PairServo:
         before: tuple[int, float] | None = None
         start = now()
         while self._reason == RUNNING:
-            due = start + int(k * tick)
-            awake = margin(awake, until(due, awake), most)
-            at = now()
+            taken, due, at, awake = await_sample(k, start, tick, awake, most)
             if k == 0:
-                start = due = at
-            missed = int((at - due) / tick)
-            k, due = k + missed, due + int(missed * tick)
-            if k > last:
+                taken, due, start = 0, at, at
+            if taken > last:
                 self._reason = DONE
                 return
-            self._missed += missed
-            late = min(max((at - due) * 1e-9, 0.0), period * (1 - 1e-9))
+            self._missed += taken - k
+            k, late = taken, lateness(at, due, period)
             readings = self._measured(k, at, late)
             self._look(readings, before, k, k * period + late)
             if self._reason != RUNNING:

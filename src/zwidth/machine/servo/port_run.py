@@ -104,7 +104,7 @@ class PortRun:
                 f"the port drives a {device.motion} device, and the connection is {connection.motion}; "
                 "describe the device as its connection measures it"
             )
-        waits = _samples_late(port)
+        waits = int(device.exact("delay") / period)  # whole periods: the port has seen to that
         simulated = connection.samples is not None
         if not simulated and waits < max(connection.late, 1):
             raise InputError(
@@ -256,11 +256,6 @@ class PortRun:
         return PortReport(
             connection.describe(), self.ended, self._samples, self._held, self._later, connection.met_hardware
         )
-
-
-def _samples_late(port: Port) -> int:
-    """Whole periods from reading to force; that they are whole the port has seen to."""
-    return int(port.device.exact("delay") / port.device.exact("sample_period"))
 
 
 def _longest(given: RealLike | None, period: Exact) -> Exact:

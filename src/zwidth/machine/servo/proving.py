@@ -158,10 +158,11 @@ class Measured(Documented):
 
 def measured(late: Array, exchange: Array, missed: int, waits: int) -> Measured:
     """From the columns of a run."""
-    return Measured(late.size, missed, _three(late), _three(exchange), waits)
+    return Measured(late.size, missed, shares(late), shares(exchange), waits)
 
 
-def _three(times: Array) -> tuple[float, float, float]:
+def shares(times: Array) -> tuple[float, float, float]:
+    """Within which half of them are, 99 %, and all [s]."""
     p50, p99, most = np.quantile(times, [0.5, 0.99, 1.0], method="higher")
     return float(p50), float(p99), float(most)
 

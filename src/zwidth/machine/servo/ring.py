@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from zwidth.data.logs.contents import COLUMNS
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import MOST_TOLD, Connection
 from zwidth.native.compiled import Array, compiled
@@ -48,7 +49,7 @@ def ring(period: float) -> Array:
 
 def column_names(connection: Connection) -> tuple[str, ...]:
     """Names of the columns, units in them."""
-    x, f = ("position_rad", "force_N_m") if connection.motion == "rotary" else ("position_m", "force_N")
+    x, f = COLUMNS[connection.motion]
     own = ("sample", "time_s", "late_s", x, f"wished_{f}", f, "energy_out_J", "friction_loss_J")
     return (*own, "status", "phase", "law", "limited", "exchange_s", *connection.tells)
 

@@ -20,15 +20,7 @@ from zwidth import __version__
 from zwidth.errors import InputError
 from zwidth.loop.plant import STATE_SIZE
 from zwidth.machine.servo import cycle
-from zwidth.machine.servo.connection import (
-    CompiledConnection,
-    Connection,
-    LibraryConnection,
-    Opened,
-    Placement,
-    blank,
-    seconds_of,
-)
+from zwidth.machine.servo.connection import Closing, Connection, Opened, Placement, reach, seconds_of
 from zwidth.machine.servo.cycle import HEARTBEAT, REASON, ROWS, SERVED, STOP, WANTED, Packed, pack
 from zwidth.machine.servo.loop import LoopThread, Shared, shared
 from zwidth.machine.servo.posix import check_supported, now
@@ -65,7 +57,7 @@ _LONGEST = 1 << 60
 _MEASURED = "1 s"
 
 
-class Servo:
+class Servo(Closing):
     """One axis of a device, served.
 
     Parameters
@@ -123,14 +115,11 @@ class Servo:
         self._first = self._packed(self.environment, 0.0)  # refused before the device is reached
         self._laws: list[tuple[str, Verdict]] = []
         self._closed = False
-        self._opened = self._open()
+        self._opened = reach(connection, float(self._period))
         self._shared = self._anew(self._opened)
         atexit.register(self.close)
 
-    def __enter__(self) -> Servo:
-        return self
-
-    def __exit__(self, kind: object, error: object, trace: object) -> None:
+    def __exit__(self, kind: object = None, *_: object) -> None:
         """Force 0, then the device is let go."""
         if kind is not None and self.running:
             self._shared.control[STOP] = FAILED
@@ -307,13 +296,6 @@ class Servo:
     def _packed(self, law: Environment, here: float) -> Packed:
         return pack(self._certain, law, here, self._limits.start_force)
 
-    def _open(self) -> Opened:
-        period = float(self._period)
-        if isinstance(self.connection, CompiledConnection):
-            return self.connection.open(period)
-        cast(LibraryConnection, self.connection).open(period)
-        return blank(0, 1, 1)
-
     def _anew(self, opened: Opened) -> Shared:
         """Arrays for a run from sample 0."""
         period = float(self._period)
@@ -341,7 +323,7 @@ class Servo:
             ROWS,
             period=period,
             title=self._title,
-            about=self._about(),
+            about=about(self.device, self.environment, self.connection, self.placement, self.safety),
         )
         self._rows.events.append(self._event(self.environment))
         return found
@@ -349,10 +331,6 @@ class Servo:
     @property
     def _title(self) -> str:
         return f"{self.environment.describe(self.device.motion)} on {self.connection.describe()}"
-
-    def _about(self) -> dict[str, Any]:
-        """What a recording keeps of it."""
-        return about(self.device, self.environment, self.connection, self.placement, self.safety)
 
     def _event(self, law: Environment) -> dict[str, Any]:
         return {
@@ -394,7 +372,7 @@ class Servo:
 def about(
     device: Device, environment: Environment, connection: Connection, placement: Placement, safety: Safety
 ) -> dict[str, Any]:
-    """Texts and numbers, units in the keys."""
+    """What a recording keeps of a servo: texts and numbers, units in the keys."""
     x = "rad" if device.motion == "rotary" else "m"
     return {
         "zwidth_version": __version__,

@@ -84,11 +84,6 @@ class Device(Parametric):
     transmission
         What gives way between motor and hand, a `Transmission`; mass, damping, friction and stiction are then
         those on the motor's side. None: motor, encoder and hand move as one.
-
-    Raises
-    ------
-    InputError
-        If a number is missing, not finite, or outside its bound.
     """
 
     mass: UncertainOrNone = parameter(

@@ -49,11 +49,6 @@ def rotary(
         The other arguments of `Device`: damping b ≥ 0 [N·m·s/rad], coulomb_friction τ_c ≥ 0 and stiction
         ≥ τ_c [N·m], friction_speed > 0 [rad/s], force_limit and force_resolution, as torques [N·m]; rate or
         sample_period, delay, …
-
-    Raises
-    ------
-    InputError
-        If a number is missing, not finite, or outside its bound.
     """
     if counts_per_turn is not None:
         if resolution is not None:

@@ -104,11 +104,6 @@ class NonlinearSpring(_Nonlinear):
             p > 0 from one to the next [m; rad].
         force
             F > 0 that leads over the edge of one [N; N·m].
-
-        Raises
-        ------
-        InputError
-            If one of them is not such a number.
         """
         _check_count(count, "count", 1)
         p, top = _positive(pitch, "pitch", "position"), _positive(force, "force", "force")
@@ -137,11 +132,6 @@ class NonlinearSpring(_Nonlinear):
             D > 0, the largest u [m; rad].
         points
             n ≥ 2, how many. Default 32.
-
-        Raises
-        ------
-        InputError
-            If one of them is not such a number.
         """
         _check_count(points, "points", 2)
         x0 = read_number(start, GLOSSARY["position"], "start").fraction

@@ -31,11 +31,6 @@ class HandImpedance(Parametric):
         k ≥ 0 [N/m; N·m/rad]. Default 0.
     damping
         c ≥ 0 [N·s/m; N·m·s/rad]. Default 0.
-
-    Raises
-    ------
-    InputError
-        If a number is not finite or negative.
     """
 
     mass: Uncertain = parameter("mass", 0, bound="≥ 0", why=_DRIVES, meaning="of the hand")

@@ -239,11 +239,6 @@ class RateTerm(RenderingLaw):
     time_constant
         τ > 0 [s]; None: T/2, what the hold is late by.
 
-    Raises
-    ------
-    InputError
-        If τ is not positive.
-
     Notes
     -----
     Jafari, Nabeel & Ryu (2015), the term of the force.

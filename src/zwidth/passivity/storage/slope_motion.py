@@ -191,13 +191,22 @@ class _Slopes:
         if abs(forces).max() > self._level:
             return True, inf
         steps = self._way_in(high - low)
-        held = float(np.trapezoid(forces, places)) * self._count * (1 if turns.low > start else -1)
-        cost = max(0.0, held + steps * self._lost((high - low) / steps))
+        lost = steps * self._lost((high - low) / steps)
+        cost = max(0.0, self._stored(turns.low) + lost)  # what the spring stores at the start is no gain
         samples = steps + 2 * (turns.moves + turns.still) * (self.losses.delay + 3 + cost / gained)
         speed = (turns.high - turns.low) / turns.moves / self._per_speed
         depth = max(abs(turns.low), abs(turns.high)) * self._count
         long = samples * float(self.losses.period) > LONGEST_OF_HANDS
         return long or is_beyond_hands(depth, speed, self._unit), samples
+
+    def _stored(self, place: float) -> float:
+        """The potential of the spring over its lowest value [J]."""
+        x, f = self._law
+        i = np.flatnonzero((f[:-1] < 0) & (f[1:] > 0))
+        places = np.unique([*x, *(x[i] - f[i] * (x[i + 1] - x[i]) / (f[i + 1] - f[i])), place])
+        forces = self._force(places)
+        potential = np.cumsum([0.0, *(np.diff(places) * (forces[1:] + forces[:-1]) / 2)]) * self._count
+        return float(potential[np.searchsorted(places, place)] - potential.min())
 
     def _start(self, turns: _Turns) -> Fraction:
         """Where the hand begins: the nearest rest."""

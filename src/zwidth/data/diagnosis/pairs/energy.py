@@ -29,10 +29,10 @@ from numpy.typing import NDArray
 
 from zwidth.data.diagnosis import drive
 from zwidth.data.diagnosis.drive import STRAIGHT
-from zwidth.data.diagnosis.evidence import Known
+from zwidth.data.diagnosis.evidence import Known, Motion
 from zwidth.data.diagnosis.pairs.recording import PairRecording
 from zwidth.data.diagnosis.recording import Recording
-from zwidth.data.diagnosis.vibration import HARMONICS, Vibration, find, phasors
+from zwidth.data.diagnosis.vibration import Vibration, find, phasors
 from zwidth.model.device import Device
 from zwidth.native.compiled import Array
 
@@ -118,39 +118,31 @@ def gather(
     known = [Known.of(device) for device in devices] if devices is not None else [Known(), Known()]
     rows, period = vibration.rows, recording.leader.period
     loop_period = max((k.period for k in known if k.period), default=period)
-    omega = vibration.angular
-    orders = np.arange(1.0, HARMONICS + 1)
-    positions = [arm.position[rows] for arm in recording.arms]
-    xs = [phasors(x, vibration.frequency, period) for x in positions]
+    about = vibration.angular, loop_period, vibration.frequency, period
+    xs = [phasors(arm.position[rows], vibration.frequency, period) for arm in recording.arms]
+    motions = [Motion(x, *about) for x in xs]
     seen = [
         _arm(arm, recording.arms[1 - k], rows, loop_period, vibration) for k, arm in enumerate(recording.arms)
     ]
     forces, laws, delays, rates, added, behind = zip(*seen, strict=True)
-    half = 0.5 * orders * omega * loop_period
-    hold = np.sinc(half / np.pi) * np.exp(-1j * half)
     ratio = _ratio(laws)
     supplied = dict.fromkeys(TERMS, 0.0)
     energy = 0.0
     for k, weight in ((0, 1.0), (1, ratio)):
-        energy += weight * _work(phasors(forces[k], vibration.frequency, period) * hold, xs[k], orders)
-        fitted = laws[k]
+        own, fitted = motions[k], laws[k]
+        energy += weight * own.work(own.phasors(forces[k]))
         if fitted is None:
             continue
-        helped = phasors(fitted.helped, vibration.frequency, period) * hold
-        for name, part in _terms(fitted, delays[k], xs[k], xs[1 - k], hold, orders * omega, loop_period):
-            supplied[name] += weight * _work(part, xs[k], orders)
-        supplied["friction compensation"] += weight * _work(helped, xs[k], orders)
-        limited = phasors(added[k], vibration.frequency, period) * hold
-        supplied["actuator limit"] += weight * _work(limited, xs[k], orders)
+        for name, part in _terms(fitted, delays[k], own, xs[1 - k]):
+            supplied[name] += weight * own.work(part)
+        supplied["friction compensation"] += weight * own.work(own.phasors(fitted.helped))
+        supplied["actuator limit"] += weight * own.work(own.phasors(added[k]))
     rubs = None
     if all(k.damping is not None for k in known):
-        weighted = list(zip(known, xs, (1.0, ratio), strict=True))
+        weighted = list(zip(known, motions, (1.0, ratio), strict=True))
         rubs = (
-            sum(
-                w * np.pi * omega * (k.damping or 0.0) * float((np.abs(orders * x) ** 2).sum())
-                for k, x, w in weighted
-            ),
-            sum(w * 4 * (k.coulomb or 0.0) * float(abs(x[0])) for k, x, w in weighted),
+            sum(w * own.viscous(k.damping or 0.0) for k, own, w in weighted),
+            sum(w * 4 * (k.coulomb or 0.0) * float(abs(own.xs[0])) for k, own, w in weighted),
         )
     steps = [k.resolution or arm.resolution for k, arm in zip(known, recording.arms, strict=True)]
     return PairEvidence(
@@ -222,30 +214,17 @@ def _ratio(laws: Sequence[ArmLaw | None]) -> float:
     return 1.0 if abs(np.log(ratio)) < 0.02 else ratio
 
 
-def _terms(
-    fitted: ArmLaw,
-    delay: float | None,
-    own: Phasors,
-    other: Phasors,
-    hold: Phasors,
-    omegas: Array,
-    period: float,
-) -> list[tuple[str, Phasors]]:
-    k = fitted.stiffness
-    late = np.exp(-1j * omegas * (fitted.lag if delay is None else delay))
-    old = other * np.exp(-1j * omegas * fitted.link_delay)
-    speed = (1 - np.exp(-1j * omegas * period)) / period
+def _terms(fitted: ArmLaw, delay: float | None, own: Motion, other: Phasors) -> list[tuple[str, Phasors]]:
+    spring, old = fitted.stiffness * (own.xs - other), other * own.late(fitted.link_delay)
+    late = own.late(fitted.lag if delay is None else delay)
+    speed = late * (1 - own.late(own.loop_period)) / own.loop_period
     return [
-        ("link delay", k * hold * (other - old)),
-        ("sampling", k * (hold - 1) * (own - other)),
-        ("delay", k * hold * (late - 1) * (own - old)),
-        ("damping", fitted.damping * hold * late * speed * (own - old)),
-        ("local damping", fitted.local_damping * hold * late * speed * own),
+        ("link delay", own.held(fitted.stiffness * (other - old))),
+        ("sampling", own.held(spring) - spring),
+        ("delay", own.held(fitted.stiffness * (late - 1) * (own.xs - old))),
+        ("damping", own.held(fitted.damping * speed * (own.xs - old))),
+        ("local damping", own.held(fitted.local_damping * speed * own.xs)),
     ]
-
-
-def _work(force: Phasors, x: Phasors, orders: Array) -> float:
-    return float(-np.pi * (orders * np.imag(force * np.conj(x))).sum())
 
 
 # Which law an arm of a pair was moved by: stiffness, damping, how old its own reading was and the other's.

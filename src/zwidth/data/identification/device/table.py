@@ -91,32 +91,27 @@ def named(key: str, motion: str) -> str:
 
 
 def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
+    def of(symbol: str, name: str, estimate: Estimate) -> Row:
+        return _row(symbol, name, estimate.value, estimate.interval(confidence), estimate.unit)
+
     table = []
     if identified.mass is not None:
         unit = quantity_unit("mass", identified.motion)
         table.append(Row("m", named("mass", identified.motion), f"{identified.mass:.4g}", "as given", unit))
     for key, symbol in SYMBOLS.items():
         if key in identified.estimates:
-            estimate = identified.estimates[key]
-            low, high = estimate.interval(confidence)
-            table.append(
-                _row(symbol, named(key, identified.motion), estimate.value, low, high, estimate.unit)
-            )
+            table.append(of(symbol, named(key, identified.motion), identified.estimates[key]))
         if key == "damping" and identified.shows("damping by direction"):
             for name in ("inward", "outward"):
-                estimate = getattr(identified.directions, name)
-                low, high = estimate.interval(confidence)
-                table.append(_row("b", f"  {name}", estimate.value, low, high, estimate.unit))
+                table.append(of("b", f"  {name}", getattr(identified.directions, name)))
     if identified.cable is not None:
         for key, estimate in identified.cable.between.items():
-            low, high = estimate.interval(confidence)
             symbol, name = _BETWEEN[key].quantity.symbol, key.replace("_", " ").replace("coulomb", "Coulomb")
-            name = name if key.startswith("handle") else f"{name} of the cable"
-            table.append(_row(symbol, name, estimate.value, low, high, estimate.unit))
+            table.append(of(symbol, name if key.startswith("handle") else f"{name} of the cable", estimate))
     stiffness = GLOSSARY["stiffness"].unit_for(identified.motion)
     for limit in limits(identified):
-        low, high = limit.interval(confidence)
-        table.append(_row(limit.symbol, NAMES[limit.symbol], limit.value, low, high, stiffness))
+        within = limit.interval(confidence)
+        table.append(_row(limit.symbol, NAMES[limit.symbol], limit.value, within, stiffness))
     return table
 
 
@@ -156,9 +151,9 @@ def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[
         yield Lines(identified.findings)
 
 
-def _row(symbol: str, name: str, value: float, low: float, high: float, unit: str) -> Row:
+def _row(symbol: str, name: str, value: float, ends: tuple[float, float], unit: str) -> Row:
     factor, told = spoken(unit)
-    interval = f"{in_a_table(factor * low)} … {in_a_table(factor * high)}"
+    interval = " … ".join(in_a_table(factor * end) for end in ends)
     return Row(symbol, name, in_a_table(factor * value), interval, unit_text(told))
 
 

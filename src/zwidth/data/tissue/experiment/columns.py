@@ -18,7 +18,7 @@ import numpy as np
 
 from zwidth.data.logs.columns import POUND, WEIGHT, measured_in
 from zwidth.data.logs.read import table_of_file
-from zwidth.data.logs.rows import side_by_side
+from zwidth.data.logs.rows import seconds, side_by_side
 from zwidth.data.logs.table import Finding, Table, listed, readable, understood_sheets
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
@@ -317,24 +317,13 @@ def _read(
         )
     keys = ("time", "indentation", "force", "trial")[: len(wanted)]
     tests = side_by_side(table, dict(zip(keys, wanted, strict=True)), dict(zip(keys, whole, strict=True)))
+    stamps = tests["time"]
     return Raw(
         table.source,
-        _seconds(tests["time"], known.time.factor),
+        seconds(stamps, stamps[0] if stamps.dtype.kind in "iuM" else 0.0, known.time.factor),
         tests["indentation"].astype(float) * known.indentation.factor,
         tests["force"].astype(float) * known.force.factor,
         tests["trial"].astype(float) if known.trial else None,
         (*known.findings, *table.notes.values()),
         known.beside,
     )
-
-
-def _seconds(stamps: np.ndarray, factor: float) -> Array:
-    """Dates from the first one on: a double has no room for microseconds in a year's worth of seconds."""
-    if stamps.dtype.kind == "M":
-        since = (stamps - stamps[0]).astype("timedelta64[ns]")
-        seconds = since.astype(float) / 1e9
-        seconds[np.isnat(since)] = np.nan
-        return np.asarray(seconds)
-    if stamps.dtype.kind in "iu":
-        stamps = stamps - stamps[0]
-    return np.asarray(stamps.astype(float) * factor)

@@ -128,6 +128,8 @@ def _apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
 class Dynamixel(BusServo):
     """``τ = k I``; angle of the output [rad], counted on over the turns.
 
+    Its watchdog begins with the first torque of the loop.
+
     Parameters
     ----------
     port
@@ -210,7 +212,9 @@ class Dynamixel(BusServo):
             )
         if current_unit is not None and current_unit <= 0:
             raise InputError(f"current unit must be > 0, got {current_unit!r} A: the register counts in it")
-        super().__init__(port, identifier, baud)
+        super().__init__(
+            port, identifier, baud, put_read, lambda out, *order: put_write(out, 0, *order), receive
+        )
         self.torque_per_current = torque_per_current
         self._steps = math.ceil(watchdog / _WATCHDOG_UNIT - 1e-9)  # 0.14/0.02 is a little more than 7
         self.watchdog = self._steps * _WATCHDOG_UNIT
@@ -220,17 +224,8 @@ class Dynamixel(BusServo):
         self._most_torque = math.nan
         self._pwm = _FULL_PWM
 
-    def open(self, sample_period: float) -> Opened:
-        """As of every connection; the watchdog begins with the first torque of the loop.
-
-        Raises
-        ------
-        InputError
-            If the watchdog is shorter than two sample periods, there is no such port, or the servo does not
-            answer, reports a fault, is none that is known, or has no watchdog.
-        """
+    def _check_period(self, sample_period: float) -> None:
         check_watchdog(self.watchdog, sample_period)
-        return super().open(sample_period)
 
     @property
     def on_silence(self) -> str:
@@ -252,20 +247,12 @@ class Dynamixel(BusServo):
     def _name(self) -> str:
         return f"Dynamixel {self._model} {self.identifier} at {self.port}"
 
-    def _question(self, out: Bytes, address: int, count: int) -> int:
-        return put_read(out, self.identifier, address, count)
-
-    def _order(self, out: Bytes, address: int, count: int, value: int) -> int:
-        return put_write(out, 0, self.identifier, address, count, value)
-
-    def _receive(self, descriptor: int, inbox: Bytes, count: int, until: int) -> int:
-        return receive(descriptor, inbox, self.identifier, count, until)
-
-    def _prepare(self, memory: Array) -> None:
+    def _prepare(self, opened: Opened) -> None:
         """Torque off for what stands in the EEPROM; the goal is 0 before it is on again.
 
         A change of the operating mode sets the goal current to the current limit.
         """
+        memory = opened.memory
         memory[SERVO] = self.identifier
         unit = self._unit()
         limit, mode = self._read(_CURRENT_LIMIT, 2), self._drive_mode()

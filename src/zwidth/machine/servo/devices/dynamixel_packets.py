@@ -12,15 +12,16 @@ Source: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0" and "CRC calculation".
 
 from __future__ import annotations
 
-from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED
 from zwidth.machine.servo.devices.frames import (
-    MOST_READS,
+    BROKEN,
+    EARLIER,
+    FAILED,
+    NOT_OURS,
+    RIGHT,
+    answered,
     crc16,
-    dropped,
     get_unsigned,
-    more_bytes,
     put,
-    unanswered,
 )
 from zwidth.machine.servo.posix import Bytes
 from zwidth.native.compiled import compiled
@@ -34,9 +35,6 @@ _READ, _SYNC_WRITE, _STATUS = 0x02, 0x83, 0x55
 _POLYNOMIAL = 0x8005
 _LONGEST = 64
 """Bytes of an answer; ours have 11 to 25."""
-
-# What a packet is to the one who asked.
-_NOT_OURS, _RIGHT, _EARLIER, _BROKEN, _FAILED = range(5)
 
 
 @compiled
@@ -63,29 +61,7 @@ def receive(descriptor: int, inbox: Bytes, identifier: int, count: int, until: i
 
     An answer of another length is one to an earlier question.
     """
-    filled, garbled, stale = 0, False, False
-    for _ in range(MOST_READS):
-        came = more_bytes(descriptor, inbox, filled, until)
-        if came == -2:
-            return CLOSED
-        if came <= 0:
-            return unanswered(garbled or filled > 0, stale)
-        filled += came
-        at = 0
-        while filled - at >= 7:
-            size = _size(inbox, at)
-            if size > filled - at:
-                break
-            kind = _kind(inbox, at, size, identifier, count)
-            if kind == _RIGHT:
-                return GOOD
-            if kind == _FAILED:
-                return REFUSED
-            stale = stale or kind == _EARLIER
-            garbled = garbled or kind == _BROKEN
-            at += 1 if kind == _BROKEN else size
-        filled = dropped(inbox, at, filled)
-    return GARBLED
+    return answered(descriptor, inbox, identifier, count, until, 7, _size, _kind)
 
 
 @compiled
@@ -114,15 +90,15 @@ def _size(inbox: Bytes, at: int) -> int:
 def _kind(inbox: Bytes, at: int, size: int, identifier: int, count: int) -> int:
     """What the packet is; error and parameters of the right one are moved to the beginning."""
     if size == 0:
-        return _BROKEN
+        return BROKEN
     stop = at + size - 2
     if crc16(inbox, at, stop, _POLYNOMIAL, 0) != get_unsigned(inbox, stop, 2):
-        return _BROKEN
+        return BROKEN
     if inbox[at + 4] != identifier or inbox[at + 7] != _STATUS or size < 11:
-        return _NOT_OURS  # of another servo, or what we have sent ourselves
+        return NOT_OURS  # of another servo, or what we have sent ourselves
     if inbox[at + 8] & 0x7F != 0:
-        return _FAILED
-    return _RIGHT if _unstuffed(inbox, at + 8, stop) == count + 1 else _EARLIER
+        return FAILED
+    return RIGHT if _unstuffed(inbox, at + 8, stop) == count + 1 else EARLIER
 
 
 @compiled

@@ -28,7 +28,6 @@ from zwidth.machine.servo.connection import (
     CLOSED,
     DESCRIPTOR,
     FORCE,
-    GARBLED,
     GOOD,
     LEAVES,
     OWN,
@@ -39,17 +38,19 @@ from zwidth.machine.servo.connection import (
     SETS,
     TELLS,
     UNTIL,
+    Opened,
     Setting,
     exchanged,
 )
 from zwidth.machine.servo.devices.frames import (
-    MOST_READS,
+    BROKEN,
+    EARLIER,
+    NOT_OURS,
+    RIGHT,
+    answered,
     counted_on,
-    dropped,
     get_unsigned,
-    more_bytes,
     put,
-    unanswered,
     unwritten,
 )
 from zwidth.machine.servo.devices.serial_port import BusServo
@@ -173,7 +174,7 @@ class Feetech(BusServo):
                 "measure it at standstill with your supply, or take the stall torque of the data sheet at "
                 "its voltage"
             )
-        super().__init__(port, identifier, baud)
+        super().__init__(port, identifier, baud, put_read, put_write, receive)
         self.full_duty_torque = full_duty_torque
         self.reverse = reverse
         self._most_torque = math.nan
@@ -198,17 +199,9 @@ class Feetech(BusServo):
     def _name(self) -> str:
         return f"Feetech servo {self.identifier} at {self.port}"
 
-    def _question(self, out: Bytes, address: int, count: int) -> int:
-        return put_read(out, self.identifier, address, count)
-
-    def _order(self, out: Bytes, address: int, count: int, value: int) -> int:
-        return put_write(out, self.identifier, address, count, value)
-
-    def _receive(self, descriptor: int, inbox: Bytes, count: int, until: int) -> int:
-        return receive(descriptor, inbox, self.identifier, count, until)
-
-    def _prepare(self, memory: Array) -> None:
+    def _prepare(self, opened: Opened) -> None:
         """With the lock on, what is written is forgotten when the servo is switched off."""
+        memory = opened.memory
         memory[SERVO] = self.identifier
         resolution = self._read(_RESOLUTION, 1)
         if resolution != 1:
@@ -251,9 +244,6 @@ _READ, _SYNC_WRITE = 0x02, 0x83
 _LONGEST = 32
 """Bytes of an answer; ours have 6 to 12."""
 
-# What a packet is to the one who asked.
-_NOT_OURS, _RIGHT, _EARLIER, _BROKEN = range(4)
-
 
 @compiled
 def put_read(out: Bytes, identifier: int, address: int, count: int) -> int:
@@ -288,27 +278,7 @@ def receive(descriptor: int, inbox: Bytes, identifier: int, count: int, until: i
 
     An answer of another length is one to an earlier question.
     """
-    filled, garbled, stale = 0, False, False
-    for _ in range(MOST_READS):
-        came = more_bytes(descriptor, inbox, filled, until)
-        if came == -2:
-            return CLOSED
-        if came <= 0:
-            return unanswered(garbled or filled > 0, stale)
-        filled += came
-        at = 0
-        while filled - at >= 4:
-            size = _size(inbox, at)
-            if size > filled - at:
-                break
-            kind = _kind(inbox, at, size, identifier, count)
-            if kind == _RIGHT:
-                return GOOD
-            stale = stale or kind == _EARLIER
-            garbled = garbled or kind == _BROKEN
-            at += 1 if kind == _BROKEN else size
-        filled = dropped(inbox, at, filled)
-    return GARBLED
+    return answered(descriptor, inbox, identifier, count, until, 4, _size, _kind)
 
 
 @compiled
@@ -338,11 +308,11 @@ def _size(inbox: Bytes, at: int) -> int:
 def _kind(inbox: Bytes, at: int, size: int, identifier: int, count: int) -> int:
     """What the packet is; state and parameters of the right one are moved to the beginning."""
     if size == 0 or _complement(inbox, at + 2, at + size - 1) != inbox[at + size - 1]:
-        return _BROKEN
+        return BROKEN
     if inbox[at + 2] != identifier:
-        return _NOT_OURS
+        return NOT_OURS
     if size != 6 + count:
-        return _EARLIER
+        return EARLIER
     for i in range(count + 1):
         inbox[i] = inbox[at + 4 + i]
-    return _RIGHT
+    return RIGHT

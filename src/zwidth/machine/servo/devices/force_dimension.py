@@ -57,11 +57,6 @@ class ForceDimension(LibraryConnection):
         Which of the devices that are connected, from 0; None: the first that is free.
     simulator
         True to look for the maker's simulator, on this machine, in the place of a device.
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"

@@ -8,11 +8,12 @@ the rest of the frame, times x¹⁶, divided by a polynomial over two elements (
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from math import floor
 
 import numpy as np
 
-from zwidth.machine.servo.connection import CLOSED, GARBLED, SILENT, STALE
+from zwidth.machine.servo.connection import CLOSED, GARBLED, GOOD, REFUSED, SILENT, STALE
 from zwidth.machine.servo.posix import Bytes, now, pause, read_some
 from zwidth.native.compiled import Array, compiled
 
@@ -109,6 +110,49 @@ def more_bytes(descriptor: int, inbox: Bytes, filled: int, until: int) -> int:
         if over:
             return 0
         pause(_PAUSE)
+
+
+# What a packet is to the one who asked.
+NOT_OURS, RIGHT, EARLIER, BROKEN, FAILED = range(5)
+
+
+@compiled
+def answered(
+    descriptor: int,
+    inbox: Bytes,
+    asked: int,
+    count: int,
+    until: int,
+    head: int,
+    size_of: Callable[[Bytes, int], int],
+    kind_of: Callable[[Bytes, int, int, int, int], int],
+) -> int:
+    """Wait for the answer of whom was asked, with so many parameters, and let `kind_of` move it to the
+    beginning.  `size_of` is the size of the packet that begins at a place, 0 if none does; it needs `head`
+    bytes."""
+    filled, garbled, stale = 0, False, False
+    for _ in range(MOST_READS):
+        came = more_bytes(descriptor, inbox, filled, until)
+        if came == -2:
+            return CLOSED
+        if came <= 0:
+            return unanswered(garbled or filled > 0, stale)
+        filled += came
+        at = 0
+        while filled - at >= head:
+            size = size_of(inbox, at)
+            if size > filled - at:
+                break
+            kind = kind_of(inbox, at, size, asked, count)
+            if kind == RIGHT:
+                return GOOD
+            if kind == FAILED:
+                return REFUSED
+            stale = stale or kind == EARLIER
+            garbled = garbled or kind == BROKEN
+            at += 1 if kind == BROKEN else size
+        filled = dropped(inbox, at, filled)
+    return GARBLED
 
 
 @compiled

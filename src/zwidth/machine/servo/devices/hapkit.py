@@ -18,7 +18,6 @@ clock of 16 MHz divides without a rest (16 · 1 MHz), and 2 ms at 115 200 Bd, wh
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from typing import Any, ClassVar, Literal
 
 from zwidth.errors import InputError
@@ -35,23 +34,23 @@ from zwidth.machine.servo.connection import (
     SILENT,
     STATUS,
     UNTIL,
-    CompiledConnection,
     Opened,
     Setting,
-    blank,
     exchanged,
 )
 from zwidth.machine.servo.devices.frames import (
+    BROKEN,
     CCITT,
+    EARLIER,
+    RIGHT,
+    answered,
     crc16,
     get_signed,
     get_unsigned,
-    more_bytes,
     put,
-    unanswered,
     unwritten,
 )
-from zwidth.machine.servo.devices.serial_port import open_port
+from zwidth.machine.servo.devices.serial_port import SerialConnection
 from zwidth.machine.servo.posix import Bytes, discard, now, write_all
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.text import shown
@@ -86,36 +85,20 @@ def _send(memory: Array, outbox: Bytes, kind: int, millinewtons: int) -> bool:
 
 
 @compiled
-def _accept(memory: Array, inbox: Bytes, at: int) -> int:
-    """The reading, of the answer to our question."""
-    if int(inbox[at + 2]) & CUT:
-        return REFUSED
-    memory[READING] = memory[COUNT] * get_signed(inbox, at + 3, 4)
-    return GOOD
+def _size(inbox: Bytes, at: int) -> int:
+    return _ANSWER if inbox[at] == FROM_DEVICE else 0
 
 
 @compiled
-def _await(memory: Array, inbox: Bytes) -> int:
-    """Wait for the answer with our number; what else comes is passed over."""
-    held, at, garbled, stale = 0, 0, False, False
-    while True:
-        count = more_bytes(int(memory[DESCRIPTOR]), inbox, held, int(memory[UNTIL]))
-        if count == -2:
-            return CLOSED
-        if count == 0:
-            return unanswered(garbled or at < held, stale)
-        held += count
-        while at < held:
-            if inbox[at] != FROM_DEVICE:
-                at, garbled = at + 1, True
-            elif held - at < _ANSWER:
-                break
-            elif crc16(inbox, at, at + 7, CCITT, _ONES) != get_unsigned(inbox, at + 7, 2):
-                at, garbled = at + 1, True
-            elif inbox[at + 1] != int(memory[NUMBER]):
-                at, stale = at + _ANSWER, True
-            else:
-                return _accept(memory, inbox, at)
+def _kind(inbox: Bytes, at: int, size: int, number: int, _: int) -> int:
+    """What the frame is; the right one is moved to the beginning."""
+    if size == 0 or crc16(inbox, at, at + 7, CCITT, _ONES) != get_unsigned(inbox, at + 7, 2):
+        return BROKEN
+    if inbox[at + 1] != number:
+        return EARLIER
+    for i in range(_ANSWER):
+        inbox[i] = inbox[at + i]
+    return RIGHT
 
 
 @compiled
@@ -125,7 +108,13 @@ def _ask(memory: Array, inbox: Bytes, outbox: Bytes, kind: int) -> int:
         return CLOSED
     if not _send(memory, outbox, kind, 0):
         return unwritten(int(memory[DESCRIPTOR]), inbox)
-    return _await(memory, inbox)
+    number, until = int(memory[NUMBER]), int(memory[UNTIL])
+    status = answered(int(memory[DESCRIPTOR]), inbox, number, 0, until, 1, _size, _kind)
+    if status == GOOD and int(inbox[2]) & CUT:
+        return REFUSED
+    if status == GOOD:
+        memory[READING] = memory[COUNT] * get_signed(inbox, 3, 4)
+    return status
 
 
 @exchanged
@@ -145,7 +134,7 @@ def _apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     return GOOD if _send(memory, outbox, GIVE, whole) else unwritten(int(memory[DESCRIPTOR]), inbox)
 
 
-class Hapkit(CompiledConnection):
+class Hapkit(SerialConnection):
     """A Hapkit with the sketch of examples/hapkit, at its handle [m, N].
 
     The reading is 0 where the handle stands when the port is opened.  A force is sent in whole millinewtons,
@@ -160,11 +149,6 @@ class Hapkit(CompiledConnection):
         the position grows.  To be found with a rule, see docs/connections.md.
     baud
         As the sketch has it [Bd].
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"
@@ -193,8 +177,6 @@ class Hapkit(CompiledConnection):
         if not (isinstance(baud, int) and baud > 0):
             raise InputError(f"baud is a whole number > 0, got {baud!r}: give the one of the sketch")
         self.port, self.count, self.baud = port, count, baud
-        self._line: Any = None
-        self._opened: Opened | None = None
 
     @property
     def on_silence(self) -> str:
@@ -204,25 +186,19 @@ class Hapkit(CompiledConnection):
             "it is opened anew"
         )
 
-    def open(self, sample_period: float) -> Opened:
-        """As of every connection; the position is 0 where the handle stands."""
-        self._check(sample_period)
-        self._line = open_port(self.port, self.baud)
-        opened = self._opened = blank(2)
-        opened.memory[DESCRIPTOR], opened.memory[COUNT] = self._line.fileno(), self.count
+    def _prepare(self, opened: Opened) -> None:
+        opened.memory[COUNT] = self.count
         end, status = now() + _BOOT, SILENT
         while status != GOOD and status != CLOSED and now() < end:
             opened.memory[UNTIL] = now() + _ONE_TRY
             status = _start(*opened)
         if status != GOOD:
-            self.close()
             raise InputError(
                 f"the board at {self.port} gave, when asked to start: {STATUS[status]}; "
                 f"does it run the sketch of examples/hapkit, at {self.baud} Bd?"
             )
-        return opened
 
-    def _check(self, sample_period: float) -> None:
+    def _check_period(self, sample_period: float) -> None:
         if 2 * sample_period >= WATCHDOG:
             raise InputError(
                 f"the sample period must be below {shown(WATCHDOG / 2, 's')}, got "
@@ -236,14 +212,8 @@ class Hapkit(CompiledConnection):
                 "too, or serve it more slowly"
             )
 
-    def close(self) -> None:
-        if self._line is None or self._opened is None:
-            return
-        self._opened.memory[FORCE] = 0.0
-        with suppress(OSError):
-            _apply(*self._opened)
-            self._line.close()
-        self._line = None
+    def _end(self, opened: Opened) -> None:
+        _apply(*opened)
 
     def describe(self) -> str:
         """Which device, over what, which axis: one line."""

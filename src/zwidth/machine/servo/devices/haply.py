@@ -43,14 +43,12 @@ from zwidth.machine.servo.connection import (
     SILENT,
     STATUS,
     UNTIL,
-    CompiledConnection,
     Opened,
     Setting,
-    blank,
     exchanged,
 )
 from zwidth.machine.servo.devices.frames import get_float32, more_bytes, put_float32, unwritten
-from zwidth.machine.servo.devices.serial_port import open_port
+from zwidth.machine.servo.devices.serial_port import SerialConnection
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.parameter import one_of
@@ -66,7 +64,6 @@ DEVICE, MOTORS, OWED, HELD, AXIS, FIRST, SECOND = range(OWN, OWN + 7)
 ARMS = SECOND + 1
 TORQUES = ARMS + 3
 FOUND = TORQUES + 2
-_SIZE = FOUND + 6 - OWN
 
 _FIRST_ANSWER = 2e9
 """How long the board is waited for when it is opened [ns]."""
@@ -250,7 +247,7 @@ def _apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     return GOOD
 
 
-class _Haply(CompiledConnection):
+class _Haply(SerialConnection):
     """The board with its joints; which of their angles or positions is the axis."""
 
     maker: ClassVar[str] = "Haply's firmware M3 1.5 and M0 0.3, hAPI of 2021, HaplyHAPI 1.0.1"
@@ -268,6 +265,8 @@ class _Haply(CompiledConnection):
     measure: ClassVar[Any] = staticmethod(_measure)
     apply: ClassVar[Any] = staticmethod(_apply)
 
+    baud = 115200
+
     def __init__(self, port: str, number: int, joints: Sequence[HaplyJoint]) -> None:
         if not (isinstance(number, int) and 1 <= number <= 255):
             raise InputError(
@@ -280,20 +279,16 @@ class _Haply(CompiledConnection):
                 f"the joints are at ports {', '.join(str(joint.port) for joint in self.joints)}: "
                 "the firmware counts directions from port 1 on without a gap; plug in at 1, or at 1 and 2"
             )
-        self._line: Any = None
 
     @property
     def on_silence(self) -> str:
         """The firmware has no watchdog."""
         return "holds the last torques until it is given others or loses its power: it has no watchdog"
 
-    def open(self, sample_period: float) -> Opened:
-        """As of every connection; the joints must stand at their offsets, where the count begins."""
-        self._line = open_port(self.port, 115200)
-        opened = blank(_SIZE)
+    def _prepare(self, opened: Opened) -> None:
+        """The joints must stand at their offsets, where the count begins."""
         memory = opened.memory
-        memory[DESCRIPTOR], memory[DEVICE] = self._line.fileno(), self.number
-        memory[MOTORS] = len(self.joints)
+        memory[DEVICE], memory[MOTORS] = self.number, len(self.joints)
         memory[FIRST], memory[SECOND] = self.joints[0].port - 1, self.joints[-1].port - 1
         self._set_axis(memory)
         self._write(bytes((RESET, 0)))
@@ -301,13 +296,11 @@ class _Haply(CompiledConnection):
         memory[UNTIL] = now() + _FIRST_ANSWER
         status = self.measure(*opened)
         if status != GOOD:
-            self.close()
             raise InputError(
                 f"the board at {self.port} gave, when asked for its angles: {STATUS[status]}; "
                 "is it a Haply board with its firmware, are the joints at their offsets, "
                 "and the hardware version and the links those of this device?"
             )
-        return opened
 
     @abstractmethod
     def _set_axis(self, memory: Array) -> None:
@@ -326,13 +319,9 @@ class _Haply(CompiledConnection):
         with suppress(OSError):  # a board that is gone does not answer either
             self._line.write(frame)
 
-    def close(self) -> None:
-        if self._line is None:
-            return
+    def _end(self, opened: Opened) -> None:
         count = len(self.joints)
         self._write(struct.pack(f"<BB{count}f", EXCHANGE, self.number, *([0.0] * count)))
-        self._line.close()
-        self._line = None
 
 
 class HaplyPantograph(_Haply):
@@ -353,11 +342,6 @@ class HaplyPantograph(_Haply):
     links
         Lengths of an arm at a motor, of one at the tip, and between the motors, l, L and d [m]; None:
         those of the version.
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "linear"
@@ -416,11 +400,6 @@ class HaplyMotor(_Haply):
         As of `HaplyJoint`.
     number
         As of `HaplyPantograph`.
-
-    Raises
-    ------
-    InputError
-        If an argument is not as it should be.
     """
 
     motion: ClassVar[Literal["linear", "rotary"]] = "rotary"

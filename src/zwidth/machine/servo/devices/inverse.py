@@ -271,7 +271,6 @@ class Inverse(CompiledConnection):
         ("gravity_compensation", "", "size: a force of the service's own is added", LEAVES, "Filters"),
         ("preset and basis of the session", "", "sign: which way x, y, z are", LEAVES, "WebSocket Protocol"),
     )  # fmt: skip
-    met_hardware = False
     measure = _measure
     apply = _apply
 

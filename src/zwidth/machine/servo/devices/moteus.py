@@ -34,10 +34,8 @@ from zwidth.machine.servo.connection import (
     TELLS,
     TOLD,
     UNTIL,
-    CompiledConnection,
     Opened,
     Setting,
-    blank,
     exchanged,
 )
 from zwidth.machine.servo.devices.frames import (
@@ -67,7 +65,7 @@ from zwidth.machine.servo.devices.moteus_frames import (
     put_torque,
     understood,
 )
-from zwidth.machine.servo.devices.serial_port import check_watchdog, open_port
+from zwidth.machine.servo.devices.serial_port import SerialConnection, check_watchdog
 from zwidth.machine.servo.posix import Bytes, now, write_all
 from zwidth.native.compiled import Array, compiled
 from zwidth.quantity.text import shown
@@ -175,7 +173,7 @@ def _apply(memory: Array, inbox: Bytes, outbox: Bytes) -> int:
     return GOOD if write_all(descriptor, outbox, count) else unwritten(descriptor, inbox)
 
 
-class Moteus(CompiledConnection):
+class Moteus(SerialConnection):
     """``τ`` as feed-forward torque, gains 0; angle of the output shaft [rad], counted on over the turns.
 
     Parameters
@@ -257,8 +255,6 @@ class Moteus(CompiledConnection):
         self.watchdog = watchdog
         self.checksums = checksums
         self.baud = baud
-        self._line: Any = None
-        self._opened: Opened | None = None
         self._configuration: dict[str, float] = {}
 
     @property
@@ -274,43 +270,26 @@ class Moteus(CompiledConnection):
             )
         return f"{first} {_TIMEOUTS.get(mode, 'goes limp')} (servo.timeout_mode {mode:g}){last}"
 
-    def open(self, sample_period: float) -> Opened:
+    def _check_period(self, sample_period: float) -> None:
+        check_watchdog(self.watchdog, sample_period)
+
+    def _prepare(self, opened: Opened) -> None:
         """Stop the controller, so that its faults are forgotten; then torque 0, until it operates.
 
         Until the first torque of the loop the watchdog is off, and the torque 0.
-
-        Raises
-        ------
-        InputError
-            If there is no such port, the controller does not answer, reports a fault, is set to turn its
-            motor by a fixed voltage, or its watchdog is shorter than two sample periods.
         """
-        check_watchdog(self.watchdog, sample_period)
-        self._line = open_port(self.port, self.baud)
-        memory, inbox, outbox = self._opened = blank(CHECKED + 1 - OWN)
-        memory[DESCRIPTOR], memory[SERVO] = self._line.fileno(), self.identifier
-        memory[CHECKED], memory[WATCHDOG] = float(self.checksums), ANY
-        try:
-            self._begin(memory, inbox, outbox)
-        except InputError:
-            self.close()
-            raise
+        memory = opened.memory
+        memory[SERVO], memory[CHECKED], memory[WATCHDOG] = self.identifier, float(self.checksums), ANY
+        self._begin(*opened)
         memory[WATCHDOG] = round(self.watchdog * 1e3)
         memory[SEEN] = 0.0
-        return self._opened
 
-    def close(self) -> None:
+    def _end(self, opened: Opened) -> None:
         """Torque 0, then the driver off."""
-        if self._line is None or self._opened is None:
-            return
-        memory, inbox, outbox = self._opened
+        memory, inbox, outbox = opened
         if memory[MODE] == OPERATING:  # else a torque, also of 0, would make it begin
-            memory[FORCE] = 0.0
             _apply(memory, inbox, outbox)
         write_all(int(memory[DESCRIPTOR]), outbox, put_stop(outbox, self.identifier, self.checksums))
-        with suppress(OSError):
-            self._line.close()
-        self._line = None
 
     def describe(self) -> str:
         """Which controller, where, what of its configuration bears on the torque, and what has been met."""

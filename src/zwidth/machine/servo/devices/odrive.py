@@ -19,15 +19,12 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.machine.servo.connection import (
-    DESCRIPTOR,
     LEAVES,
     REFUSES,
     RESTORES,
     TELLS,
-    CompiledConnection,
     Opened,
     Setting,
-    blank,
 )
 from zwidth.machine.servo.devices.odrive_lines import (
     CLOSED_LOOP,
@@ -45,7 +42,7 @@ from zwidth.machine.servo.devices.odrive_lines import (
     ask_position,
     give_torque,
 )
-from zwidth.machine.servo.devices.serial_port import open_port
+from zwidth.machine.servo.devices.serial_port import SerialConnection
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import in_si
 
@@ -62,7 +59,7 @@ _SPEED_LIMITS = (
 """From firmware 0.5.3 on, and before."""
 
 
-class ODrive(CompiledConnection):
+class ODrive(SerialConnection):
     """One axis of an ODrive, torque against angle.
 
     Opening it sets torque control without a filter of the input and without its limit of the speed
@@ -84,15 +81,9 @@ class ODrive(CompiledConnection):
         Of a UART [1/s]; USB ignores it.
     watchdog
         Seconds without a torque after which the ODrive lets the motor go by itself.
-
-    Raises
-    ------
-    InputError
-        If a number is out of its range.
     """
 
     motion = "rotary"
-    late = 0
     maker = "ODrive firmware 0.5.6, Firmware/MotorControl; that of 0.6 is not published"
     settings: ClassVar[tuple[Setting, ...]] = (
         (_SPEED_LIMITS[0], "1", "size: |τ| ≤ (vel_limit ∓ v)·vel_gain, as delivered (2 turn/s ∓ v)/6 N·m",
@@ -129,7 +120,7 @@ class ODrive(CompiledConnection):
         ("fet_thermistor, motor_thermistor", "100 °C", "size: less current from there on", LEAVES,
          "motor.cpp:376"),
     )  # fmt: skip
-    met_hardware = False
+    taken = 1024
     measure = ask_position
     apply = give_torque
 
@@ -143,39 +134,24 @@ class ODrive(CompiledConnection):
                 "torque when this program or the line does"
             )
         self.port, self.axis, self.baud, self.watchdog = port, axis, baud, watchdog
-        self._serial: Any = None
         self._before: dict[str, str] = {}
         self._limits = ""
 
-    def open(self, sample_period: float) -> Opened:
-        """Reach the ODrive, set it up, and wait until the axis is in closed loop control."""
+    def _check_period(self, sample_period: float) -> None:
         if self.watchdog < 4 * sample_period:
             raise InputError(
                 f"watchdog must be {shown(4 * sample_period, 's', 6)} or more, four sample periods, got "
                 f"{shown(self.watchdog, 's', 6)}: one lost sample must not end the torque"
             )
-        self._serial = open_port(self.port, self.baud)
-        try:
-            self._set_up()
-        except InputError:
-            self.close()
-            raise
-        return self._memory(self._serial.fileno())
 
-    def close(self) -> None:
-        """Torque 0, idle, the settings that were found; then the port."""
-        serial, self._serial = self._serial, None
+    def _end(self, opened: Opened) -> None:
+        """Torque 0, idle, the settings that were found."""
         before, self._before = self._before, {}
-        if serial is None:
-            return
-        with suppress(OSError):
-            if before:  # else what is at the port has not answered as an ODrive
-                serial.write(b"\n" + _line_of(f"c {self.axis} 0"))  # what was cut before ends here
-                for name, value in {"requested_state": _IDLE, **before}.items():
-                    self._write(serial, name, value)
-                _ask(serial, f"r axis{self.axis}.current_state", _LAST_WORD)  # heard, once it answers
-        with suppress(OSError):
-            serial.close()
+        if before:  # else what is at the port has not answered as an ODrive
+            self._line.write(b"\n" + _line_of(f"c {self.axis} 0"))  # what was cut before ends here
+            for name, value in {"requested_state": _IDLE, **before}.items():
+                self._write(name, value)
+            _ask(self._line, f"r axis{self.axis}.current_state", _LAST_WORD)  # heard, once it answers
 
     @property
     def on_silence(self) -> str:
@@ -189,10 +165,9 @@ class ODrive(CompiledConnection):
             "filtered estimate, told in steps of 6.3 µrad; only an emulator of it has been met"
         )
 
-    def _set_up(self) -> None:
-        """What opening sets, each setting read back."""
-        serial = self._serial
-        serial.write(b"\n")  # ends what an earlier program left unfinished
+    def _prepare(self, opened: Opened) -> None:
+        """What opening sets, each setting read back; the lines that never change, and nothing asked yet."""
+        self._line.write(b"\n")  # ends what an earlier program left unfinished
         self._read("current_state")
         self._check_motor()
         settings = {
@@ -205,15 +180,24 @@ class ODrive(CompiledConnection):
         for name in settings:
             self._before[name] = self._read(name)
         for name, value in settings.items():
-            self._write(serial, name, value)
+            self._write(name, value)
             found = self._read(name)
             if abs(float(found) - float(value)) > 1e-3 * abs(float(value)):
                 raise InputError(
                     f"axis{self.axis}.{name} of the ODrive at {self.port} stays {found} when set to {value}"
                 )
-        serial.write(_line_of(f"c {self.axis} 0"))
-        self._write(serial, "requested_state", CLOSED_LOOP)
+        self._line.write(_line_of(f"c {self.axis} 0"))
+        self._write("requested_state", CLOSED_LOOP)
         self._wait_for_start()
+        for start, end, line in (
+            (POSITION, POSITION_END, _line_of(f"f {self.axis}")),
+            (STATE, STATE_END, _line_of(f"r axis{self.axis}.current_state")),
+            (ON, ON_END, _line_of(f"w axis{self.axis}.config.enable_watchdog 1")),
+            (OFF, OFF_END, _line_of(f"w axis{self.axis}.config.enable_watchdog 0")),
+            (TORQUE, TORQUE_END, f"c {self.axis} ".encode()),
+        ):
+            opened.memory[end] = start + len(line)
+            opened.outbox[start : start + len(line)] = np.frombuffer(line, np.uint8)
 
     def _check_motor(self) -> None:
         """Refuse what would not be a torque; keep what limits one in words."""
@@ -272,7 +256,7 @@ class ODrive(CompiledConnection):
 
     def _read(self, name: str) -> str:
         """A property of the axis that is a number."""
-        answer = _ask(self._serial, f"r axis{self.axis}.{name}", _ANSWER_TIME)
+        answer = _ask(self._line, f"r axis{self.axis}.{name}", _ANSWER_TIME)
         if answer is None:
             raise InputError(
                 f"no ODrive answers at {self.port}; is it the right port, and is its text protocol turned on "
@@ -287,24 +271,8 @@ class ODrive(CompiledConnection):
             ) from None
         return answer
 
-    def _write(self, serial: Any, name: str, value: object) -> None:
-        serial.write(_line_of(f"w axis{self.axis}.{name} {value}"))
-
-    def _memory(self, descriptor: int) -> Opened:
-        """The lines that never change, and nothing asked yet."""
-        opened = blank(14, inbox=1024)
-        memory = opened.memory
-        memory[DESCRIPTOR] = descriptor
-        for start, end, line in (
-            (POSITION, POSITION_END, _line_of(f"f {self.axis}")),
-            (STATE, STATE_END, _line_of(f"r axis{self.axis}.current_state")),
-            (ON, ON_END, _line_of(f"w axis{self.axis}.config.enable_watchdog 1")),
-            (OFF, OFF_END, _line_of(f"w axis{self.axis}.config.enable_watchdog 0")),
-            (TORQUE, TORQUE_END, f"c {self.axis} ".encode()),
-        ):
-            memory[end] = start + len(line)
-            opened.outbox[start : start + len(line)] = np.frombuffer(line, np.uint8)
-        return opened
+    def _write(self, name: str, value: object) -> None:
+        self._line.write(_line_of(f"w axis{self.axis}.{name} {value}"))
 
 
 def _line_of(command: str) -> bytes:

@@ -25,6 +25,7 @@ from zwidth.machine.servo.connection import (
     UNTIL,
     exchanged,
 )
+from zwidth.machine.servo.devices.frames import dropped
 from zwidth.machine.servo.devices.json_text import read_decimal, write_decimal
 from zwidth.machine.servo.posix import Bytes, now, pause, read_some, write_all
 from zwidth.native.compiled import Array, compiled
@@ -66,9 +67,7 @@ def _take(memory: Array, inbox: Bytes) -> int:
     if start == 0 and have == inbox.shape[0]:  # so long is no line
         memory[BAD] += 1
         start = have
-    for place in range(have - start):
-        inbox[place] = inbox[start + place]
-    memory[HAVE] = have - start
+    memory[HAVE] = dropped(inbox, start, have)
     return status
 
 

@@ -10,8 +10,9 @@ from __future__ import annotations
 import importlib
 import os
 from abc import abstractmethod
+from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Any, ClassVar
 
 from zwidth import installing
 from zwidth.errors import InputError
@@ -27,8 +28,7 @@ from zwidth.machine.servo.connection import (
     blank,
 )
 from zwidth.machine.servo.devices.frames import get_unsigned
-from zwidth.machine.servo.posix import Bytes, check_supported, discard, now
-from zwidth.native.compiled import Array
+from zwidth.machine.servo.posix import check_supported, discard, now
 from zwidth.quantity.text import shown
 
 
@@ -78,78 +78,91 @@ def _others() -> str:
     return f" (there are: {', '.join(found)})" if found else " (no serial port is there at all)"
 
 
-# A servo on a bus: a register is written without an answer and read back.  So it is the same whether a servo
-# answers writes or not, and what it did not take is seen.
-
-
 _TRIES = 3
 _WAIT = 200_000_000
 """For an answer before the loop [ns]: an adapter may hold bytes back for 16 ms, a servo writes its EEPROM."""
 
-_REMEMBERED = 16
-"""Numbers of the compiled functions."""
+_REMEMBERED = 24
+"""Numbers of the compiled functions, the most that any device has."""
 
 
-class BusServo(CompiledConnection):
-    """A servo at a serial port."""
+class SerialConnection(CompiledConnection):
+    """A device at a serial port."""
 
-    def __init__(self, port: str, identifier: int, baud: int) -> None:
-        self.port = port
-        self.identifier = identifier
-        self.baud = baud
-        self._line: Any = None
-        self._opened: Opened | None = None
-        self._before: list[tuple[int, int, int]] = []
+    port: str
+    baud: int
+    taken: ClassVar[int] = 512
+    """Bytes that are taken at once."""
+
+    _line: Any = None
+    _opened: Opened | None = None
 
     def open(self, sample_period: float) -> Opened:
-        """Reach the servo, read what it is, set it up; force 0."""
+        """Reach the device, read what it is, set it up; force 0."""
+        self._check_period(sample_period)
         self._line = open_port(self.port, self.baud)
-        self._opened = blank(_REMEMBERED)
+        self._opened = blank(_REMEMBERED, inbox=self.taken)
         self._opened.memory[DESCRIPTOR] = self._line.fileno()
-        self._before = []
         try:
-            self._prepare(self._opened.memory)
+            self._prepare(self._opened)
         except InputError:
             self.close()
             raise
         return self._opened
 
     def close(self) -> None:
-        """Force 0, the motor off, the registers as they were before."""
+        """Force 0, the device as it was before; then the port."""
         if self._line is None or self._opened is None:
             return
-        memory = self._opened.memory
-        memory[FORCE] = 0.0
-        # before the first change the servo may be another program's, holding up an arm
-        if self._before and type(self).apply(*self._opened) != CLOSED:
-            with suppress(InputError):
-                self._leave()
-                for address, count, value in reversed(self._before):
-                    self._set(address, count, value)
+        self._opened.memory[FORCE] = 0.0
+        with suppress(OSError, InputError):
+            self._end(self._opened)
         with suppress(OSError):
             self._line.close()
         self._line = None
+
+    def _check_period(self, sample_period: float) -> None:
+        """Refuse a sample period with which a device would end the force by itself."""
+
+    @abstractmethod
+    def _prepare(self, opened: Opened) -> None:
+        """Make the device ready to give a force, and write what the compiled functions need."""
+
+    @abstractmethod
+    def _end(self, opened: Opened) -> None:
+        """Give force 0, which stands in the memory, and put back what was set."""
+
+
+Packet = Callable[..., int]
+
+
+class BusServo(SerialConnection):
+    """A servo on a bus: a register is written without an answer and read back.
+
+    So it is the same whether a servo answers writes or not, and what it did not take is seen.
+    """
+
+    def __init__(
+        self, port: str, identifier: int, baud: int, put_read: Packet, put_write: Packet, receive: Packet
+    ) -> None:
+        """`put_read` and `put_write` write the packet that asks for registers, or sets one, and say of how
+        many bytes; `receive` waits for the answer, inbox[0] is then the state, the registers follow."""
+        self.port, self.identifier, self.baud = port, identifier, baud
+        self._put_read, self._put_write, self._receive = put_read, put_write, receive
+        self._before: list[tuple[int, int, int]] = []
+
+    def _end(self, opened: Opened) -> None:
+        # before the first change the servo may be another program's, holding up an arm
+        before, self._before = self._before, []
+        if before and type(self).apply(*opened) != CLOSED:
+            self._leave()
+            for register in reversed(before):
+                self._set(*register)
 
     @property
     @abstractmethod
     def _name(self) -> str:
         """Which kind of servo, and which one."""
-
-    @abstractmethod
-    def _question(self, out: Bytes, address: int, count: int) -> int:
-        """Write the packet that asks for registers; how many bytes."""
-
-    @abstractmethod
-    def _order(self, out: Bytes, address: int, count: int, value: int) -> int:
-        """Write the packet that sets one; how many bytes."""
-
-    @abstractmethod
-    def _receive(self, descriptor: int, inbox: Bytes, count: int, until: int) -> int:
-        """Wait for the answer: inbox[0] is then the state of the servo, the registers follow."""
-
-    @abstractmethod
-    def _prepare(self, memory: Array) -> None:
-        """Make the servo ready to give a force, and write what the compiled functions need."""
 
     @abstractmethod
     def _leave(self) -> None:
@@ -179,8 +192,9 @@ class BusServo(CompiledConnection):
         """Write a register, and let nothing be known of what became of it."""
         assert self._opened is not None
         out = self._opened.outbox
+        size = self._put_write(out, self.identifier, address, count, value)
         with suppress(OSError):  # seen when the register is read
-            os.write(self._line.fileno(), bytes(out[: self._order(out, address, count, value)]))
+            os.write(self._line.fileno(), bytes(out[:size]))
 
     def _read(self, address: int, count: int, *, faulty: bool = False) -> int:
         """A register; of a servo that reports a fault only where `faulty` says so."""
@@ -190,8 +204,8 @@ class BusServo(CompiledConnection):
         for _ in range(_TRIES):
             discard(descriptor, inbox)
             with suppress(OSError):
-                os.write(descriptor, bytes(out[: self._question(out, address, count)]))
-            status = self._receive(descriptor, inbox, count, now() + _WAIT)
+                os.write(descriptor, bytes(out[: self._put_read(out, self.identifier, address, count)]))
+            status = self._receive(descriptor, inbox, self.identifier, count, now() + _WAIT)
             if status in (GOOD, CLOSED):
                 break
         if status != GOOD:

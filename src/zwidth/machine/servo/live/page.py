@@ -7,11 +7,12 @@ import re
 from collections.abc import Callable, Collection
 from ipaddress import ip_address
 from threading import Event, Thread
-from types import SimpleNamespace, TracebackType
+from types import SimpleNamespace
 from typing import Any
 
 from zwidth import installing
 from zwidth.errors import InputError
+from zwidth.machine.servo.connection import Closing
 
 HOST = "127.0.0.1"
 """Nobody on another machine is answered."""
@@ -22,7 +23,7 @@ OWN = (HOST, "localhost", "::1")
 _FOREIGN = b"This server does not answer to that name: open the address that zwidth printed.\n"
 
 
-class Page:
+class Page(Closing):
     """What is served, until `close`; ``with`` closes it as well.
 
     Parameters
@@ -42,14 +43,6 @@ class Page:
         close, self._close = self._close, None
         if close is not None:
             close()
-
-    def __enter__(self) -> Page:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 def checked_port(port: int) -> int:

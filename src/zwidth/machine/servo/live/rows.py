@@ -20,6 +20,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from zwidth.data.logs.contents import COLUMNS
 from zwidth.machine.servo.connection import GOOD
 from zwidth.machine.servo.ring import PHASES
 from zwidth.native.compiled import Array
@@ -72,7 +73,7 @@ class Watched:
     """Rows, and how many of them were seen; for one who looks."""
 
     def __init__(self, rows: Rows) -> None:
-        position, force = names_of(rows.motion)
+        position, force = COLUMNS[rows.motion]
         self._rows = rows
         self._seen = self._missed = 0
         wanted = (position, f"wished_{force}", force, "energy_out_J", "friction_loss_J", "late_s")
@@ -102,11 +103,6 @@ def field_name(column: str) -> str:
 def ros2_schema(columns: Sequence[str]) -> bytes:
     """The definition of a row as a message of ROS 2."""
     return "".join(f"float64 {field_name(name)}  # {name}\n" for name in columns).encode()
-
-
-def names_of(motion: str) -> tuple[str, str]:
-    """Of the columns of position and force."""
-    return ("position_rad", "force_N_m") if motion == "rotary" else ("position_m", "force_N")
 
 
 # The last seconds as they are drawn, lowest and highest in equal spans of time: one sample for each point

@@ -25,6 +25,7 @@ from zwidth import __version__
 from zwidth.data.logs import served as layout
 from zwidth.data.logs.contents import ROWS_LOST, Head, as_json, from_json
 from zwidth.errors import InputError
+from zwidth.machine.servo.connection import Closing
 from zwidth.machine.servo.live.rows import Rows, ros2_schema
 from zwidth.native.compiled import Array
 from zwidth.quantity.answered import answered
@@ -62,7 +63,7 @@ class Recorded(Documented):
         return line if self.failure is None else f"{line}; the recording ended early: {self.failure}"
 
 
-class Recorder:
+class Recorder(Closing):
     """Write the rows of a loop to a file while it runs.
 
     Parameters
@@ -94,12 +95,6 @@ class Recorder:
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="zwidth-recorder", daemon=True)
         self._thread.start()
-
-    def __enter__(self) -> Recorder:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def close(self) -> Recorded:
         """Write what is left, and the end; what became of it all.  May be called again."""
