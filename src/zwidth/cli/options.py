@@ -146,6 +146,13 @@ def given(arguments: argparse.Namespace, keys: Iterable[str]) -> dict[str, str]:
     return {key: values[dest_of(key)] for key in keys if values.get(dest_of(key)) is not None}
 
 
+def whole(typed: str, option: str) -> int:
+    try:
+        return int(typed)
+    except ValueError:
+        raise InputError(f"{option} takes a whole number, got {quoted(typed)}") from None
+
+
 def _quantity(key: str) -> Parameter:
     entry = GLOSSARY[key]
     return Parameter(key, entry.symbol, entry.meaning + _bracket(_units(entry)))

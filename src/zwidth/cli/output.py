@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any, TextIO
 from unicodedata import combining, east_asian_width
@@ -21,6 +22,13 @@ from zwidth.writing import check_target
 
 Report = Callable[[], Iterable[Part] | None]
 """Gives the parts of a report, or prints it; what only a report takes is loaded by it."""
+
+
+def printed(by: str, *told: object) -> Report:
+    """What prints these, "pair.gains_report:print_held" of the command line, loaded when it does."""
+    module, _, name = by.partition(":")
+    return lambda: getattr(import_module(f"zwidth.cli.{module}"), name)(*told)
+
 
 PICTURES = (".png", ".svg", ".pdf")
 

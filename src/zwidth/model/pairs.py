@@ -209,19 +209,8 @@ class Pair(Parametric):
             if not isinstance(law, FrictionCompensation | None):
                 raise InputError(f"{name} is a FrictionCompensation or None, got {type(law).__name__}")
         there, back = delay if isinstance(delay, (tuple, list)) and len(delay) == 2 else (delay, delay)
-        given: dict[str, Any] = {
-            "stiffness": stiffness,
-            "damping": damping,
-            "local_damping": local_damping,
-            "follower_stiffness": follower_stiffness,
-            "follower_damping": follower_damping,
-            "follower_local_damping": follower_local_damping,
-            "reflection": reflection,
-            "follower_reflection": follower_reflection,
-            "there": there,
-            "back": back,
-            "drive_rate": drive_rate,
-        }
+        everything = locals()
+        given = {name: everything[name] for name in parameters_of(Pair)}
         self._keep(leader=leader, follower=follower, **laws, **given)
         read = {name: self._number(name, value) for name, value in given.items()}
         self._keep(**read)

@@ -107,6 +107,10 @@ class Expressions(Reader):
     def _name(self, node: ast.Name) -> Read:
         if node.id in self.types:
             return Read(f"{node.id}_", self.types[node.id])
+        found = self.module.meaning(node.id)
+        if isinstance(found, Defined) and is_step_function(found.node):
+            to = self.around.signature(found)
+            return Read(to.name, Asked(tuple(of for _, of in to.takes), to.returns))
         known = self.module.value(node)
         if isinstance(known, tuple):
             return self.around.constants(known)

@@ -13,14 +13,42 @@ from zwidth.quantity.text import save_json, to_json
 from zwidth.showing import Picture, Shown
 
 
-class Documented(Shown):
+class Pictured(Shown):
+    """Something that can be drawn, where there is a picture of it."""
+
+    _PICTURE: ClassVar[str] = ""
+    """What draws it, among the plots above."""
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or the file cannot be written.
+        """
+        figure = self.figure()
+        if path is not None:
+            above("plots").save_figure(lambda: figure, path, overwrite=True)
+        return figure
+
+    def figure(self) -> Any:
+        """What `plot` returns."""
+        if not self._PICTURE:
+            raise InputError(f"there is no picture of this {type(self).__name__}")
+        return getattr(above("plots"), self._PICTURE)(self)
+
+
+class Documented(Pictured):
     """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
 
     _FORMAT: ClassVar[str] = ""
     """Under which its document is known; "" for a part of another one."""
-
-    _PICTURE: ClassVar[str] = ""
-    """What draws it, among the plots above."""
 
     def to_dict(self) -> dict[str, Any]:
         """It as plain data, a unit in every key of a physical quantity."""
@@ -44,24 +72,6 @@ class Documented(Shown):
         """
         save_json(path, self.saved())
 
-    def plot(self, path: str | Path | None = None) -> Any:
-        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
-
-        Parameters
-        ----------
-        path
-            Ends in .png, .svg or .pdf.
-
-        Raises
-        ------
-        InputError
-            If there is nothing to draw, or the file cannot be written.
-        """
-        figure = self.figure()
-        if path is not None:
-            above("plots").save_figure(lambda: figure, path, overwrite=True)
-        return figure
-
     def pictures(self) -> Iterable[Picture]:
         """Its picture for a notebook, small; none where there is nothing to draw."""
         if not self._PICTURE:
@@ -76,12 +86,6 @@ class Documented(Shown):
     def says(self) -> str:
         """What its picture shows, for those who cannot see it."""
         return type(self).__name__
-
-    def figure(self) -> Any:
-        """What `plot` returns."""
-        if not self._PICTURE:
-            raise InputError(f"there is no picture of this {type(self).__name__}")
-        return getattr(above("plots"), self._PICTURE)(self)
 
 
 _SMALL = 80

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from zwidth.cli.decision import NAMES, asked, decided, exit_status, one_timing, ranges_of, with_hands
 from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output
-from zwidth.cli.output import print_found, targets
+from zwidth.cli.output import print_found, printed, targets
 
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
@@ -55,12 +55,9 @@ def run(arguments: argparse.Namespace) -> int:
     if plot is not None:
         verdict.plot(plot)
     replayed = _replayed(verdict) if arguments.replay else None
-
-    def report() -> None:
-        from zwidth.cli.check.report import print_verdict
-
-        print_verdict(verdict, replayed, active, arguments.in_full, ranges, hands)
-
+    report = printed(
+        "check.report:print_verdict", verdict, replayed, active, arguments.in_full, ranges, hands
+    )
     in_full = partial(_in_full, verdict, hands, real_hand=replayed, active_hand=active, ranges=ranges)
     print_found(arguments.json, in_full, report, save, plot)
     return exit_status(verdict.outcome)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import asked, of_one_value
 from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output, overrides
-from zwidth.cli.output import give_out, print_message, targets
+from zwidth.cli.output import give_out, print_message, printed, targets
 from zwidth.cli.parsing import dest_of
 from zwidth.errors import InputError
 from zwidth.missing import suggestion
@@ -69,12 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.show.with_bar import passive_limit
 
     bracket = passive_limit(loop.device, loop.environment, parameter, told=_announce, **options)
-
-    def report() -> None:
-        from zwidth.cli.check.limit_report import print_bracket
-
-        print_bracket(bracket, loop, arguments.in_full)
-
+    report = printed("check.limit_report:print_bracket", bracket, loop, arguments.in_full)
     give_out(bracket, save, plot, arguments.json, report, partial(_json, bracket))
     both = bracket.proved_passive is not None and bracket.proved_active is not None
     return BOTH if both or bracket.every_value else ONE_OR_NONE

@@ -21,7 +21,7 @@ from zwidth.cli.options import (
     output,
     reading_of,
 )
-from zwidth.cli.output import print_found, targets
+from zwidth.cli.output import print_found, printed, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.table import quoted
 from zwidth.quantity.text import shown
@@ -83,12 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
         found.identified.save(save, confidence, force=True, **found.others)
     if plot is not None:
         found.identified.plot(plot, force=True)
-
-    def report() -> None:
-        from zwidth.cli.data.identification_report import print_identified
-
-        print_identified(found, arguments.in_full)
-
+    report = printed("data.identification_report:print_identified", found, arguments.in_full)
     print_found(arguments.json, partial(_json, found), report, save, plot)
     if found.environment is None:
         return 0

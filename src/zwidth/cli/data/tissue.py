@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.data.results import FittedTissue, OnDevice
 from zwidth.cli.decision import decided, device_of_one_value, exit_status, one_timing, ranges_of
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, look_for, output, pairs_of
-from zwidth.cli.output import print_found, targets
+from zwidth.cli.output import print_found, printed, targets
 from zwidth.errors import InputError
 from zwidth.missing import suggestion
 from zwidth.model.specification.table import quoted
@@ -79,12 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         _save(found, save, arguments.scaled)
     if plot is not None:
         found.test.plot(plot)
-
-    def report() -> None:
-        from zwidth.cli.data.tissue_report import print_tissue
-
-        print_tissue(found, arguments.in_full)
-
+    report = printed("data.tissue_report:print_tissue", found, arguments.in_full)
     print_found(arguments.json, partial(_json, found), report, save, plot)
     return 0 if found.wall is None else exit_status(found.wall.verdict.outcome)
 

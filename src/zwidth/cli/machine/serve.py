@@ -18,6 +18,7 @@ from zwidth.cli.machine.serve_tables import (
     merged,
     reached,
     safety_parameters,
+    told,
 )
 from zwidth.cli.options import CONTACT, FORCE, LAW, PARAMETERS, contact, given, overrides
 from zwidth.cli.output import print_json, print_message, print_report, quiet_pipe, say_written
@@ -28,7 +29,7 @@ from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, read_tables,
 from zwidth.model.specification.table import Table
 
 if TYPE_CHECKING:
-    from zwidth.machine.servo import Connection, Placement, Safety, Servo
+    from zwidth.machine.servo import Connection, Servo
     from zwidth.model.device import Device
 
 
@@ -80,6 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
     from zwidth.cli.decision import decided, exit_status, of_one_value
     from zwidth.cli.machine.serve_commands import listen
     from zwidth.machine.servo.proving import NotProved
+    from zwidth.machine.servo.safety import read_safety
     from zwidth.machine.servo.serving import serve
     from zwidth.model.specification.read import Specification
 
@@ -90,7 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _serve_pair(arguments, tables)
     loop = of_one_value(specified({k: t for k, t in tables.items() if k in WITH_LAWS}, overrides(arguments)))
     law = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
-    connection, placement = _connection(arguments, tables, loop.device.motion)
+    motion = loop.device.motion
+    connection, placement = reached(told(arguments, tables, CONNECTION, connection_parameters), motion)
     commands = [partial(listen, arguments)] if arguments.commands else []
     asked = contact(arguments)
     try:
@@ -100,7 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
             connection,
             hand=_hand(arguments, tables, loop.device, connection),
             duration=arguments.duration,
-            safety=_safety(arguments, tables, loop.device.motion),
+            safety=read_safety(told(arguments, tables, SAFETY, safety_parameters), motion),
             placement=placement,
             decide=lambda device, environment: decided(Specification(device, environment), asked),
             anyway=arguments.anyway,
@@ -212,21 +215,6 @@ def _in_terminal(servo: Servo) -> Callable[[], Any]:
         drawing.join()
 
     return end
-
-
-def _connection(
-    arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str
-) -> tuple[Connection | None, Placement | None]:
-    """How the device is reached; None for the simulated one."""
-    typed = given(arguments, [p.key for p in connection_parameters()])
-    return reached(merged(tables.get(CONNECTION), typed, CONNECTION), motion)
-
-
-def _safety(arguments: argparse.Namespace, tables: Mapping[str, Table], motion: str) -> Safety:
-    from zwidth.machine.servo.safety import read_safety
-
-    typed = given(arguments, [p.key for p in safety_parameters()])
-    return read_safety(merged(tables.get(SAFETY), typed, SAFETY), motion)
 
 
 def _hand(

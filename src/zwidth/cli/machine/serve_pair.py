@@ -22,6 +22,7 @@ from zwidth.cli.machine.serve_tables import (
     merged,
     reached,
     safety_parameters,
+    told,
 )
 from zwidth.cli.options import given
 from zwidth.cli.simulate.simulate import pair_with_options
@@ -52,8 +53,7 @@ def served_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> P
     (leader, at), (follower, other_at) = (
         _side(pair, leads, arguments, tables, duration) for leads in (True, False)
     )
-    typed = given(arguments, [p.key for p in safety_parameters()])
-    safety = read_safety(merged(tables.get(SAFETY), typed, SAFETY), pair.motion)
+    safety = read_safety(told(arguments, tables, SAFETY, safety_parameters), pair.motion)
     places = (at or Placement(), other_at or Placement())
     with PairServo(pair, leader, follower, safety=safety, placements=places) as servo:
         return servo.run(duration, anyway=arguments.anyway)

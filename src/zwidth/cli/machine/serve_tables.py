@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import argparse
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from zwidth.cli.options import given
 from zwidth.cli.parsing import Parameter
 from zwidth.errors import InputError
 from zwidth.model.specification.table import COMMAND_LINE, Table
@@ -58,6 +60,16 @@ def reached(table: Table, motion: str) -> tuple[Connection | None, Placement | N
         table.check_keys(("type",), "the simulated connection")
         return None, None
     return build_connection(table), Placement.read(place, motion)
+
+
+def told(
+    arguments: argparse.Namespace,
+    tables: Mapping[str, Table],
+    name: str,
+    parameters: Callable[[], Iterable[Parameter]],
+) -> Table:
+    """The table of a name, with what was typed in its place."""
+    return merged(tables.get(name), given(arguments, [p.key for p in parameters()]), name)
 
 
 def merged(table: Table | None, typed: Mapping[str, str], name: str) -> Table:

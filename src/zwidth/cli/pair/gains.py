@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import exit_status
 from zwidth.cli.options import FORCE, IN_FULL, look_for
-from zwidth.cli.output import give_out, print_found, targets
+from zwidth.cli.output import give_out, print_found, printed, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import question_time
 from zwidth.quantity.text import save_json, to_json
@@ -96,12 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     if arguments.joint is not None:
         return _of_one(verdict, arguments, plot, save)
-
-    def report() -> None:
-        from zwidth.cli.pair.gains_report import print_gains
-
-        print_gains(verdict, arguments.in_full)
-
+    report = printed("pair.gains_report:print_gains", verdict, arguments.in_full)
     give_out(verdict, save, None, arguments.json, report)
     return exit_status(verdict.outcome)
 
@@ -144,12 +139,7 @@ def _held(arguments: argparse.Namespace) -> int:
         better = passive_gains(*asked, **share, stiffest=arguments.stiffest)
     if save is not None:
         (found if better is None else better).save(save)
-
-    def report() -> None:
-        from zwidth.cli.pair.gains_report import print_held
-
-        print_held(found, better)
-
+    report = printed("pair.gains_report:print_held", found, better)
     print_found(arguments.json, lambda: to_json(found.to_dict()), report, save)
     return exit_status(found.outcome)
 
@@ -173,12 +163,7 @@ def _target(arguments: argparse.Namespace) -> Path | None:
 
 def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
     """An impedance at the end: what it is, and which command decides it."""
-
-    def report() -> None:
-        from zwidth.cli.pair.gains_report import print_cartesian
-
-        print_cartesian(controllers, arguments.files[0])
-
+    report = printed("pair.gains_report:print_cartesian", controllers, arguments.files[0])
     document = {"outcome": "undecided", **controllers.to_dict()}
     print_found(arguments.json, lambda: to_json(document), report)
     return exit_status("undecided")
@@ -192,12 +177,7 @@ def _of_one(
         save_json(save, {**pair.saved(), **notes})
     if plot is not None:
         pair.plot(plot)
-
-    def report() -> None:
-        from zwidth.cli.pair.gains_report import print_joint
-
-        print_joint(pair, verdict.notes, arguments.in_full)
-
+    report = printed("pair.gains_report:print_joint", pair, verdict.notes, arguments.in_full)
     print_found(arguments.json, lambda: to_json({**pair.to_dict(), **notes}), report, save, plot)
     return exit_status(pair.outcome)
 
@@ -206,13 +186,7 @@ def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
     """Gains of a follower alone: what they are, and no verdict."""
     if save is not None:
         raise InputError("there is no law of both arms, so there is no verdict to save; --both makes one")
-
-    def report() -> None:
-        from zwidth.cli.pair.gains_report import print_follower
-
-        print_follower(gains)
-
-    print_found(as_json, lambda: to_json(gains.to_dict()), report)
+    print_found(as_json, lambda: to_json(gains.to_dict()), printed("pair.gains_report:print_follower", gains))
     return exit_status("undecided")
 
 

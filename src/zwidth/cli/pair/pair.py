@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from zwidth.cli.decision import exit_status
 from zwidth.cli.options import IN_FULL, coupling_parameters, given, output
-from zwidth.cli.output import give_out, targets
+from zwidth.cli.output import give_out, printed, targets
 from zwidth.cli.parsing import Parameter
 from zwidth.cli.simulate.tables import FOLLOWER, OPERATOR
 from zwidth.errors import InputError
@@ -25,12 +25,7 @@ def run(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     pair = load_pair(arguments.sources, given(arguments, [p.key for p in coupling_parameters()]))
     verdict = check(pair, **known_hands(arguments, pair.motion))
-
-    def report() -> None:
-        from zwidth.cli.pair.pair_report import print_pair
-
-        print_pair(verdict, arguments.in_full)
-
+    report = printed("pair.pair_report:print_pair", verdict, arguments.in_full)
     give_out(verdict, save, plot, arguments.json, report)
     return exit_status(verdict.outcome)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Callable, Collection, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 
@@ -111,57 +112,29 @@ def _devices() -> Collection[str]:
     return catalogue.names()
 
 
-def _arms() -> Collection[str]:
-    from zwidth.model.arms import BUILT_IN
-
-    return BUILT_IN
-
-
-def _environments() -> Collection[str]:
-    from zwidth.model.specification.environments import TYPES
-
-    return TYPES
+def _registered(module: str, name: str) -> Callable[[], Collection[str]]:
+    """The names of a registry, which is loaded when they are asked for."""
+    return lambda: getattr(import_module(f"zwidth.{module}"), name)
 
 
-def _laws() -> Collection[str]:
-    from zwidth.model.rendering import LAWS
-
-    return LAWS
-
-
-def _hands() -> Collection[str]:
-    from zwidth.model.operator import OPERATORS
-
-    return OPERATORS
-
-
-def _targets() -> Collection[str]:
-    from zwidth.machine.firmware.targets import TARGETS
-
-    return TARGETS
-
-
-def _connections() -> Collection[str]:
-    from zwidth.machine.servo.devices.registry import CONNECTIONS
-
-    return CONNECTIONS
-
+_laws = _registered("model.rendering", "LAWS")
+_hands = _registered("model.operator", "OPERATORS")
 
 _WORDS: Mapping[str, Callable[[], Collection[str]]] = MappingProxyType(
     {
         "SOURCE": _devices,
         "NAME": _devices,
         "--catalogue": _devices,
-        "ARM": _arms,
+        "ARM": _registered("model.arms", "BUILT_IN"),
         "SHELL": lambda: SHELLS,
         "KIND": lambda: ("device", "environment"),
-        "--type": _environments,
+        "--type": _registered("model.specification.environments", "TYPES"),
         "--law": _laws,
         "--laws": _laws,
         "--operator": _hands,
         "--follower-operator": _hands,
-        "--target": _targets,
-        "--connection": _connections,
+        "--target": _registered("machine.firmware.targets", "TARGETS"),
+        "--connection": _registered("machine.servo.devices.registry", "CONNECTIONS"),
         "--of": lambda: ("check", "limit", "simulate", "pair"),
         "--contact": lambda: ("kept", "made-and-broken"),
         "--motion": lambda: ("linear", "rotary"),

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.decision import NAMES, device_of_one_value, named_hands
-from zwidth.cli.options import DEVICE, FORCE, PLOT, device_parameters, given
+from zwidth.cli.options import DEVICE, FORCE, PLOT, device_parameters, given, whole
 from zwidth.cli.output import print_found, print_message, targets
 from zwidth.errors import InputError
 from zwidth.model.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
@@ -143,7 +143,7 @@ def _options(arguments: argparse.Namespace, motion: str, environment: Table | No
             parse_number(arguments.speed, GLOSSARY["velocity"].unit_for(motion), "speed")
         )
     if arguments.workers is not None:
-        options["workers"] = _whole(arguments.workers, "--workers")
+        options["workers"] = whole(arguments.workers, "--workers")
     return options
 
 
@@ -164,14 +164,7 @@ def _cells(typed: str) -> tuple[int, int]:
     along_k, cross, along_b = typed.lower().replace("×", "x").partition("x")
     if not cross:
         raise InputError(f"--cells is written NxM, such as 200x200, got {quoted(typed)}")
-    return _whole(along_k, "--cells"), _whole(along_b, "--cells")
-
-
-def _whole(typed: str, option: str) -> int:
-    try:
-        return int(typed)
-    except ValueError:
-        raise InputError(f"{option} takes whole numbers, got {quoted(typed)}") from None
+    return whole(along_k, "--cells"), whole(along_b, "--cells")
 
 
 def _report(found: xr.Dataset) -> Iterator[Part]:

@@ -21,6 +21,7 @@ from zwidth.cli.options import (
     environment_parameters,
     given,
     overrides,
+    whole,
 )
 from zwidth.cli.output import PICTURES, print_found, print_message, target
 from zwidth.cli.parsing import Parameter
@@ -108,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
             operator=loop.operator,
             path=arguments.save,
             address=arguments.dask,
-            workers=_workers(arguments.workers),
+            workers=None if arguments.workers is None else whole(arguments.workers, "--workers"),
             **loop.options,
         )
     except KeyboardInterrupt:
@@ -144,15 +145,6 @@ def _varied(typed: list[str] | None) -> dict[str, str]:
             raise InputError(f"--vary {name.strip()} is given twice; which one is meant?")
         found[key] = values.strip()
     return found
-
-
-def _workers(typed: str | None) -> int | None:
-    if typed is None:
-        return None
-    try:
-        return int(typed)
-    except ValueError:
-        raise InputError(f"--workers takes a whole number, got {quoted(typed)}") from None
 
 
 class Asked(NamedTuple):

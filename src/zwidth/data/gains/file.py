@@ -16,12 +16,9 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.missing import did_you_mean
-from zwidth.model.specification.read import refuse_settings
+from zwidth.model.specification.read import refuse_settings, text_of
 from zwidth.model.specification.table import plain, quoted
 from zwidth.quantity.units import parse_number
-
-LARGEST_FILE = 1 << 20
-"""Bytes; a gain file is a page of text."""
 
 MOST_JOINTS = 64
 
@@ -97,7 +94,7 @@ def read_table(path: str | Path) -> GainTable:
     """The keys of a YAML, JSON or TOML file."""
     name = quoted(str(path))
     path = Path(path)
-    text = _text(path, name)
+    text = text_of(path, name, "gain file", "file", lambda: f"there is no file {name}{did_you_mean(path)}")
     refuse_settings(text, name)
     suffix = path.suffix.lower()
     read: Callable[..., Any] | None = {".json": json.loads, ".toml": tomllib.loads}.get(suffix)
@@ -147,26 +144,6 @@ def _both(first: Any, second: Any, key: str, line: int) -> Any:
     for name, value in second.items():
         found[name] = _both(found[name], value, name, line) if name in found else value
     return found
-
-
-def _text(path: Path, name: str) -> str:
-    try:
-        if not path.is_file():
-            if path.is_dir():
-                raise InputError(f"{name} is a directory; give the file in it")
-            raise InputError(f"there is no file {name}{did_you_mean(path)}")
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{name} cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{name} is larger than {LARGEST_FILE // 1024} KiB; a gain file is a page of text")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{name} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
 
 
 def _kind(value: object) -> str:

@@ -123,7 +123,7 @@ class PlanarChain(Arm):
         )
         q = np.stack(np.meshgrid(*(a.middles for a in axes), indexing="ij"), axis=-1)
         halves = np.array([(high - low) / (2 * count) for low, high in self.joint_range])
-        change = np.full(q.shape[:-1], np.linalg.norm(self._rates() @ halves))
+        change = np.full(q.shape[:-1], np.linalg.norm(self.second_derivatives @ halves))
         return Sites(
             axes,
             q,
@@ -136,22 +136,18 @@ class PlanarChain(Arm):
 
     @property
     def curvature(self) -> float:
-        return float(np.linalg.eigvalsh(self._rates())[-1])
+        return float(np.linalg.eigvalsh(self.second_derivatives)[-1])
 
     @property
     def second_derivatives(self) -> Array:
-        """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints, m × m [m/rad²]."""
-        return self._rates()
+        """Bounds on |∂²p/∂q_i∂q_j|, the links beyond joint max(i, j), m × m [m/rad²]."""
+        beyond = np.cumsum(self.links[::-1])[::-1]
+        return np.asarray(np.minimum.outer(beyond, beyond))
 
     @property
     def turning_curvature(self) -> float | None:
         """0 in pose: the angle is the sum of the joints."""
         return 0.0 if self.pose else None
-
-    def _rates(self) -> Array:
-        """|∂²p/∂q_i∂q_j| is not longer than the links beyond joint max(i, j)."""
-        beyond = np.cumsum(self.links[::-1])[::-1]
-        return np.asarray(np.minimum(beyond[:, None], beyond[None, :]))
 
     def _links(self, q: Array) -> Array:
         bearing = np.cumsum(q, axis=-1)

@@ -46,11 +46,8 @@ def as_discretization(name: object) -> Discretization:
 
 def discretized_by(default: Discretization | None) -> Any:
     """The field `discretization` of a law in continuous time."""
-
-    def read(value: Any, name: str) -> Discretization:
-        return as_discretization(value)
-
-    return part("word", read, default, meaning=f"{', '.join(CHOICES[:-1])} or {CHOICES[-1]}", words=CHOICES)
+    meaning = f"{', '.join(CHOICES[:-1])} or {CHOICES[-1]}"
+    return part("word", lambda value, _: as_discretization(value), default, meaning=meaning, words=CHOICES)
 
 
 def choices() -> str:

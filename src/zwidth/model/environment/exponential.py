@@ -35,17 +35,7 @@ def zero_order_hold(numerator: Polynomial, denominator: Polynomial, period: Frac
     H(z) = D + C (zI − Φ)⁻¹ Γ  (Franklin, Powell & Workman, Digital Control, 4.3).
     """
 
-    def compute() -> tuple[Balls, Balls]:
-        a, output, direct = _state_space(numerator, denominator, period)
-        order = len(output)
-        # exp of [[A, B], [0, 0]] is [[Φ, Γ], [0, 1]]
-        flow = _matrix(a, [0] * (order - 1) + [1]).exp()
-        phi = flint.arb_mat([[flow[i, j] for j in range(order)] for i in range(order)])
-        gamma = flint.arb_mat([[flow[i, order]] for i in range(order)])
-        num, den = _transfer(phi, gamma, output)
-        return _with_direct([flint.arb(0), *num], den, direct), den
-
-    return _at_rest(_rounded(compute, denominator), numerator, denominator)
+    return _at_rest(_sampled(numerator, denominator, period, True), numerator, denominator)
 
 
 def impulse_invariant(numerator: Polynomial, denominator: Polynomial, period: Fraction) -> RationalFunction:
@@ -54,14 +44,22 @@ def impulse_invariant(numerator: Polynomial, denominator: Polynomial, period: Fr
     The sample h(0) is h(0⁺), counted in full.
     """
 
+    return _sampled(numerator, denominator, period, False)
+
+
+def _sampled(
+    numerator: Polynomial, denominator: Polynomial, period: Fraction, held: bool
+) -> RationalFunction:
     def compute() -> tuple[Balls, Balls]:
         a, output, direct = _state_space(numerator, denominator, period)
         order = len(output)
-        phi = _matrix(a).exp()
-        start = flint.arb_mat([[int(i == order - 1)] for i in range(order)])
-        num, den = _transfer(phi, start, output)
+        flow = _flow(a)
+        phi = flint.arb_mat([[flow[i, j] for j in range(order)] for i in range(order)])
+        start = [[flow[i, order] if held else flint.arb(int(i == order - 1))] for i in range(order)]
+        num, den = _transfer(phi, flint.arb_mat(start), output)
         # h(kT) = C Φᵏ B is one sample ahead of C (zI − Φ)⁻¹ B: times z
-        return _with_direct([*num, flint.arb(0)], den, direct), den
+        num = [flint.arb(0), *num] if held else [*num, flint.arb(0)]
+        return _with_direct(num, den, direct), den
 
     return _rounded(compute, denominator)
 
@@ -114,12 +112,10 @@ def _state_space(
     return [*shift, [-c for c in monic[:0:-1]]], output, direct
 
 
-def _matrix(a: list[list[Fraction]], column: list[int] | None = None) -> Any:
-    rows = [[ball(c) for c in row] for row in a]
-    if column is not None:
-        rows = [[*row, flint.arb(c)] for row, c in zip(rows, column, strict=True)]
-        rows.append([flint.arb(0)] * len(rows[0]))
-    return flint.arb_mat(rows)
+def _flow(a: list[list[Fraction]]) -> Any:
+    """exp of [[A, B], [0, 0]], which is [[Φ, Γ], [0, 1]]."""
+    rows = [[*map(ball, row), flint.arb(int(i == len(a) - 1))] for i, row in enumerate(a)]
+    return flint.arb_mat([*rows, [flint.arb(0)] * (len(a) + 1)]).exp()
 
 
 def _transfer(phi: Any, start: Any, output: list[Fraction]) -> tuple[Balls, Balls]:

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.model.environment.environment import Environment, certain
-from zwidth.model.environment.viscoelastic import Branch, GeneralizedMaxwell, Maxwell, StandardLinearSolid
+from zwidth.model.environment.viscoelastic import Branch, Solid
 from zwidth.model.environment.wall import Wall
 from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.parameter import read_number
@@ -73,12 +73,9 @@ def elements(solid: Environment) -> Elements:
 def _parts(solid: Environment) -> tuple[Exact | Interval, Exact | Interval, tuple[Branch, ...]]:
     if isinstance(solid, Wall):
         return solid.stiffness, solid.damping, ()
-    if isinstance(solid, Maxwell):
-        return _NONE, _NONE, ((solid.stiffness, solid.damping),)
-    if isinstance(solid, StandardLinearSolid):
-        return solid.stiffness, _NONE, ((solid.branch_stiffness, solid.branch_damping),)
-    if isinstance(solid, GeneralizedMaxwell):
-        return solid.stiffness, _NONE, solid.branches
+    if isinstance(solid, Solid):
+        spring, branches = solid.prony
+        return spring or _NONE, _NONE, branches
     raise InputError(
         "springs and dashpots side by side are those of a Wall, Maxwell, StandardLinearSolid or "
         f"GeneralizedMaxwell, got {type(solid).__name__}"

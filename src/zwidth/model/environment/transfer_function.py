@@ -48,8 +48,21 @@ def _side(name: str, *default: None) -> Any:
     )
 
 
+class _Ratio(Environment):
+    numerator: Any
+    denominator: Any
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The law factor · H, exactly."""
+        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
+
+    def _in(self, variable: str) -> str:
+        top, bottom = (polynomial_text(c, variable) for c in (self.numerator, self.denominator))
+        return top if bottom == "1" else f"({top})/({bottom})"
+
+
 @dataclass(frozen=True)
-class PulseTransferFunction(Environment):
+class PulseTransferFunction(_Ratio):
     """A law given as the controller runs it, H(z) from sampled position to force.
 
     It acts at any position: there is no surface.
@@ -96,14 +109,10 @@ class PulseTransferFunction(Environment):
             require_period(self.sample_period.fraction, sample_period)
         return RationalFunction(_fractions(self.numerator), _fractions(self.denominator))
 
-    def scaled(self, factor: Fraction) -> Self:
-        """The law factor · H(z), exactly."""
-        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
-
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line; coefficients carry no unit of their own."""
         period = "" if self.sample_period is None else f", T = {shown(self.sample_period, 's', 6)}"
-        return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
+        return f"H(z) = {self._in('z')}{period}"
 
     def decided_by_corners(self, box: Box) -> bool:
         """For T without delay: the requirement is proportional to it."""
@@ -111,7 +120,7 @@ class PulseTransferFunction(Environment):
 
 
 @dataclass(frozen=True)
-class ContinuousTransferFunction(Environment):
+class ContinuousTransferFunction(_Ratio):
     """A law given as H(s) from position to force, and how the controller discretizes it.
 
     It acts at any position: there is no surface.
@@ -166,14 +175,9 @@ class ContinuousTransferFunction(Environment):
         num, den = _fractions(self.numerator), _fractions(self.denominator)
         return discretize(num, den, self.discretization, sample_period)
 
-    def scaled(self, factor: Fraction) -> Self:
-        """The law factor · H(s), exactly."""
-        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
-
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line; coefficients carry no unit of their own."""
-        ratio = _ratio(self.numerator, self.denominator, "s")
-        return f"H(s) = {ratio}, discretization {self.discretization}"
+        return f"H(s) = {self._in('s')}, discretization {self.discretization}"
 
 
 def as_environment(thing: object, discretization: Discretization | None = None) -> Environment:
@@ -236,11 +240,6 @@ def _period(given: Exact | None, system: LinearSystem | None) -> Exact | Fractio
     if own is not None and given is not None:
         raise InputError("the system has its own sample period; leave sample_period out")
     return own if own is not None else given
-
-
-def _ratio(numerator: Coefficients, denominator: Coefficients, variable: str) -> str:
-    top, bottom = (polynomial_text(c, variable) for c in (numerator, denominator))
-    return top if bottom == "1" else f"({top})/({bottom})"
 
 
 Coefficients = tuple[Exact, ...]

@@ -19,10 +19,11 @@ pulls, f = max(0, H x): it does not hold back the hand that leaves it quickly.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Self
+from typing import ClassVar, Self
 
 from zwidth.errors import InputError
 from zwidth.model.environment.discretization import ROUNDED, Discretization, discretize, discretized_by
@@ -67,8 +68,70 @@ def _pair(pair: Sequence[Given], name: str) -> Branch:
     return mu, read_number(pair[1], dashpot, f"{name} damping", uncertain=True)
 
 
+class Solid(Environment):
+    """A spring, if it has one, with Maxwell branches beside it."""
+
+    discretization: Discretization
+    kind: ClassVar[str]
+    branch_numbers: ClassVar[tuple[str, str]]
+    """What μ and η of a branch, and of which, are called in messages."""
+
+    unilateral = True
+    rests_on_spring = True
+    """True: the branches relax to nothing."""
+
+    @property
+    @abstractmethod
+    def prony(self) -> tuple[Exact | Interval | None, tuple[Branch, ...]]:
+        """μ0, None of a solid without such a spring, and (μᵢ, ηᵢ) of the branches."""
+
+    @property
+    def spring(self) -> bool:
+        return not any(map(_acts, self.prony[1]))
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        return self.discretization in ROUNDED and any(map(_acts, self.prony[1]))
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) [N/m]; of a branch, backward, μ η (z − 1)/((μ T + η) z − η).
+
+        Branches of one relaxation time keep their common factor.
+        """
+        spring, branches = self.prony
+        num: tuple[Fraction, ...] = (Fraction(0) if spring is None else certain(spring, "stiffness"),)
+        den: tuple[Fraction, ...] = (Fraction(1),)
+        for i, branch in enumerate(branches):
+            names = (name.format(i) for name in self.branch_numbers)
+            mu, eta = map(certain, branch, names)
+            # a branch without spring or dashpot transmits no force
+            if mu and eta:
+                top, bottom = (mu * eta, Fraction(0)), (eta, mu)
+                num, den = add(multiply(num, bottom), multiply(den, top)), multiply(den, bottom)
+        return discretize(num, den, self.discretization, sample_period)
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The solid factor · H(s), exactly: stiffer, and it relaxes as before."""
+        numbers = {key: v for key, v in vars(self).items() if isinstance(v, Exact | Interval)}
+        return self.replace(**{key: times(value, factor) for key, value in numbers.items()})
+
+    def describe(self, motion: str = "linear") -> str:
+        spring, branches = self.prony
+        parts = [] if spring is None else [with_unit("stiffness", spring, motion)]
+        for branch in branches:
+            mu, eta = map(with_unit, ("branch_stiffness", "branch_damping"), branch, (motion, motion))
+            parts.append(f"({mu} in series with {eta})")
+        beside = " beside ".join(parts)
+        return f"{self.kind}, {beside}, discretization {self.discretization}{never_pulls(self.clamped)}"
+
+
+def _acts(branch: Branch) -> bool:
+    """False when the branch transmits no force, whatever its uncertain value."""
+    return all(ends(value) != (Fraction(0), Fraction(0)) for value in branch)
+
+
 @dataclass(frozen=True)
-class StandardLinearSolid(Environment):
+class StandardLinearSolid(Solid):
     """A spring with one Maxwell branch beside it, ``H(s) = μ0 + μ1 η1 s/(μ1 + η1 s)``.
 
     A step of depth 1 is answered with μ0 + μ1 at first, relaxing to μ0.
@@ -104,38 +167,12 @@ class StandardLinearSolid(Environment):
     discretization: Discretization = discretized_by("backward")
     clamped: bool = clamping()
 
-    unilateral = True
+    kind = "standard linear solid"
+    branch_numbers = ("branch_stiffness", "branch_damping")
 
     @property
-    def spring(self) -> bool:
-        return not _acts((self.branch_stiffness, self.branch_damping))
-
-    @property
-    def coefficients_rounded(self) -> bool:
-        return self.discretization in ROUNDED and not self.spring
-
-    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
-        """H(z) [N/m]; backward: μ0 + μ1 η1 (z − 1)/((μ1 T + η1) z − η1)."""
-        k = certain(self.stiffness, "stiffness")
-        mu = certain(self.branch_stiffness, "branch_stiffness")
-        eta = certain(self.branch_damping, "branch_damping")
-        return _discretized(k, [(mu, eta)], self.discretization, sample_period)
-
-    def scaled(self, factor: Fraction) -> Self:
-        """The solid factor · H(s), exactly: stiffer, and it relaxes as before."""
-        return self.replace(
-            stiffness=times(self.stiffness, factor),
-            branch_stiffness=times(self.branch_stiffness, factor),
-            branch_damping=times(self.branch_damping, factor),
-        )
-
-    def describe(self, motion: str = "linear") -> str:
-        k = with_unit("stiffness", self.stiffness, motion)
-        branch = _branch_text((self.branch_stiffness, self.branch_damping), motion)
-        return f"standard linear solid, {k} beside {branch}, {_ending(self)}"
-
-    rests_on_spring = True
-    """True: the branch relaxes to nothing."""
+    def prony(self) -> tuple[Exact | Interval, tuple[Branch, ...]]:
+        return self.stiffness, ((self.branch_stiffness, self.branch_damping),)
 
     def decided_by_corners(self, box: Box) -> bool:
         """For the spring μ0, which enters H linearly; without delay for a branch ≥ 0, backward or Tustin.
@@ -150,7 +187,7 @@ class StandardLinearSolid(Environment):
 
 
 @dataclass(frozen=True)
-class GeneralizedMaxwell(Environment):
+class GeneralizedMaxwell(Solid):
     """A spring with Maxwell branches beside it, ``H(s) = μ0 + Σ μᵢ ηᵢ s/(μᵢ + ηᵢ s)``.
 
     Its relaxation is the Prony series μ0 + Σ μᵢ exp(−t μᵢ/ηᵢ).
@@ -180,37 +217,16 @@ class GeneralizedMaxwell(Environment):
     discretization: Discretization = discretized_by("backward")
     clamped: bool = clamping()
 
-    unilateral = True
+    kind = "generalized Maxwell"
+    branch_numbers = ("branches[{}] stiffness", "branches[{}] damping")
 
     @property
-    def spring(self) -> bool:
-        return not any(_acts(branch) for branch in self.branches)
-
-    @property
-    def coefficients_rounded(self) -> bool:
-        return self.discretization in ROUNDED and not self.spring
-
-    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
-        """H(z) [N/m]; branches of one relaxation time keep their common factor."""
-        k = certain(self.stiffness, "stiffness")
-        pairs = [
-            (certain(mu, f"branches[{i}] stiffness"), certain(eta, f"branches[{i}] damping"))
-            for i, (mu, eta) in enumerate(self.branches)
-        ]
-        return _discretized(k, pairs, self.discretization, sample_period)
+    def prony(self) -> tuple[Exact | Interval, tuple[Branch, ...]]:
+        return self.stiffness, self.branches
 
     def scaled(self, factor: Fraction) -> Self:
-        """The solid factor · H(s), exactly: stiffer, and it relaxes as before."""
         branches = [(times(mu, factor), times(eta, factor)) for mu, eta in self.branches]
-        return self.replace(stiffness=times(self.stiffness, factor), branches=branches)
-
-    def describe(self, motion: str = "linear") -> str:
-        parts = [with_unit("stiffness", self.stiffness, motion)]
-        parts += [_branch_text(branch, motion) for branch in self.branches]
-        return f"generalized Maxwell, {' beside '.join(parts)}, {_ending(self)}"
-
-    rests_on_spring = True
-    """True: the branches relax to nothing."""
+        return super().scaled(factor).replace(branches=branches)
 
     def decided_by_corners(self, box: Box) -> bool:
         """For the spring μ0, which enters H linearly."""
@@ -231,7 +247,7 @@ class GeneralizedMaxwell(Environment):
 
 
 @dataclass(frozen=True)
-class Maxwell(Environment):
+class Maxwell(Solid):
     """A spring and a dashpot in series, ``H(s) = μ η s/(μ + η s)``: a viscoelastic fluid.
 
     Parameters
@@ -256,52 +272,10 @@ class Maxwell(Environment):
     discretization: Discretization = discretized_by("backward")
     clamped: bool = clamping()
 
-    unilateral = True
+    kind = "Maxwell body"
+    branch_numbers = ("stiffness", "damping")
+    spring = rests_on_spring = False
 
     @property
-    def coefficients_rounded(self) -> bool:
-        return self.discretization in ROUNDED and _acts((self.stiffness, self.damping))
-
-    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
-        """H(z) [N/m]; backward: μ η (z − 1)/((μ T + η) z − η)."""
-        pair = certain(self.stiffness, "stiffness"), certain(self.damping, "damping")
-        return _discretized(Fraction(0), [pair], self.discretization, sample_period)
-
-    def scaled(self, factor: Fraction) -> Self:
-        """The body factor · H(s), exactly: stiffer, and it relaxes as before."""
-        return self.replace(stiffness=times(self.stiffness, factor), damping=times(self.damping, factor))
-
-    def describe(self, motion: str = "linear") -> str:
-        branch = _branch_text((self.stiffness, self.damping), motion)
-        return f"Maxwell body, {branch}, {_ending(self)}"
-
-
-def _discretized(
-    stiffness: Fraction,
-    branches: Sequence[tuple[Fraction, Fraction]],
-    method: Discretization,
-    period: Fraction,
-) -> RationalFunction:
-    num: tuple[Fraction, ...] = (stiffness,)
-    den: tuple[Fraction, ...] = (Fraction(1),)
-    for mu, eta in branches:
-        # a branch without spring or dashpot transmits no force
-        if mu and eta:
-            top, bottom = (mu * eta, Fraction(0)), (eta, mu)
-            num, den = add(multiply(num, bottom), multiply(den, top)), multiply(den, bottom)
-    return discretize(num, den, method, period)
-
-
-def _acts(branch: Branch) -> bool:
-    """False when the branch transmits no force, whatever its uncertain value."""
-    return all(ends(value) != (Fraction(0), Fraction(0)) for value in branch)
-
-
-def _branch_text(branch: Branch, motion: str) -> str:
-    mu = with_unit("branch_stiffness", branch[0], motion)
-    eta = with_unit("branch_damping", branch[1], motion)
-    return f"({mu} in series with {eta})"
-
-
-def _ending(solid: StandardLinearSolid | GeneralizedMaxwell | Maxwell) -> str:
-    return f"discretization {solid.discretization}{never_pulls(solid.clamped)}"
+    def prony(self) -> tuple[None, tuple[Branch, ...]]:
+        return None, ((self.stiffness, self.damping),)

@@ -121,18 +121,8 @@ class FingersOn(_OnARim):
 
     Parameters
     ----------
-    mass
-        J_h ≥ 0 of both fingers, moves with the knob [kg·m²].
-    stiffness
-        k > 0, to the angle that they want [N·m/rad].
-    damping
-        c ≥ 0, to the same [N·m·s/rad].
-    force
-        τ ≥ 0, with which they would turn against a rigid stop [N·m].
-    speed
-        ω > 0, of the approach [rad/s].
-    start
-        θ_0 ≤ 0, where anchor and knob start [rad].
+    mass, stiffness, damping, force, speed, start
+        J_h, k, c, τ, ω and θ_0 as for `Finger` [kg·m²; N·m/rad; N·m·s/rad; N·m; rad/s; rad].
     """
 
     called = "fingers on a knob"
@@ -156,18 +146,8 @@ class HandsOn(_OnARim):
 
     Parameters
     ----------
-    mass
-        J_h ≥ 0 of both hands, moves with the wheel [kg·m²].
-    stiffness
-        k > 0, to the angle that they want [N·m/rad].
-    damping
-        c ≥ 0, to the same [N·m·s/rad].
-    force
-        τ ≥ 0, with which they would turn against a rigid stop [N·m].
-    speed
-        ω > 0, of the approach [rad/s].
-    start
-        θ_0 ≤ 0, where anchor and wheel start [rad].
+    mass, stiffness, damping, force, speed, start
+        J_h, k, c, τ, ω and θ_0 as for `Finger` [kg·m²; N·m/rad; N·m·s/rad; N·m; rad/s; rad].
     """
 
     called = "hands on"

@@ -34,20 +34,10 @@ _ROUNDING = 1e-12
 
 
 @compiled
-def coupled_forces(
-    p: Array,
-    at: int,
-    rows: int,
-    compliance: int,
-    count: int,
-    m: Array,
-    states: int,
-    forces: int,
-    free: int,
-    period: float,
-) -> None:
+def coupled_forces(p: Array, at: int, m: Array, states: int, free: int) -> None:
     """f in its place in `m`, begun with that of the step before; w° stands at `free`, then there is room."""
-    w = free + count
+    count, rows, compliance = int(p[at + OTHERS]), at + int(p[at + OTHER_ROWS]), at + int(p[at + COMPLIANCE])
+    forces, w = states + count, free + count
     for i in range(count):
         own = p[compliance + i * count + i]
         if p[rows + ROW * i] == COULOMB and own > 0.0:  # alone it is found at once
@@ -55,13 +45,13 @@ def coupled_forces(
             m[states + i] = min(max(m[free + i] / own, -most), most)
             m[forces + i] = m[states + i]
     for _ in range(STEPS):
-        least_of(p, at, rows, compliance, count, m, states, forces, free, period)
+        least_of(p, at, m, states, free)
         sticks = True
         for i in range(count):
             if p[rows + ROW * i] == COULOMB:
                 number = at + int(p[rows + ROW * i + 1])
-                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period)
-                _w, terms = velocity(p, compliance, count, m, forces, free, i)
+                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], p[at + PERIOD])
+                _w, terms = velocity(p, at, m, states, free, i)
                 sticks = sticks and abs(f - m[states + i]) <= 10.0 * CLOSE * p[number + 1] * terms
                 m[states + i] = f
         if sticks:
@@ -69,32 +59,22 @@ def coupled_forces(
 
 
 @compiled
-def velocity(
-    p: Array, compliance: int, count: int, m: Array, forces: int, free: int, i: int
-) -> tuple[float, float]:
+def velocity(p: Array, at: int, m: Array, states: int, free: int, i: int) -> tuple[float, float]:
     """w = w° − M f of one element, and how large what is added up there is."""
+    count, compliance = int(p[at + OTHERS]), at + int(p[at + COMPLIANCE])
     taken, terms = 0.0, abs(m[free + i])
     for j in range(count):
-        term = p[compliance + i * count + j] * m[forces + j]
+        term = p[compliance + i * count + j] * m[states + count + j]
         taken += term
         terms += abs(term)
     return m[free + i] - taken, terms
 
 
 @compiled
-def least_of(
-    p: Array,
-    at: int,
-    rows: int,
-    compliance: int,
-    count: int,
-    m: Array,
-    states: int,
-    forces: int,
-    free: int,
-    period: float,
-) -> None:
+def least_of(p: Array, at: int, m: Array, states: int, free: int) -> None:
     """λ of the least P for the frictions' c as they are, in the place of f; w of it behind w°."""
+    count, rows, compliance = int(p[at + OTHERS]), at + int(p[at + OTHER_ROWS]), at + int(p[at + COMPLIANCE])
+    forces, period = states + count, p[at + PERIOD]
     w, gap, step, moved = free + count, free + 2 * count, free + 3 * count, free + 4 * count
     matrix = free + 5 * count
     wide = count + 1
@@ -103,7 +83,7 @@ def least_of(
         for i in range(count):  # a contact in the air need not come to 0 beside forces of others
             least = max(least, _BESIDE * abs(m[forces + i]))
         for i in range(count):
-            m[w + i], terms = velocity(p, compliance, count, m, forces, free, i)
+            m[w + i], terms = velocity(p, at, m, states, free, i)
             row = rows + ROW * i
             f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period)
             if p[compliance + i * count + i] == 0.0:  # the port alone moves it
@@ -128,62 +108,39 @@ def least_of(
             falls += taken * m[gap + i]
         t = 1.0  # where forces hold each other and nothing moves, the slope of P is rounding, of any sign
         if falls > _ROUNDING * terms:
-            t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period)
+            t = how_far(p, at, m, states, free)
         for i in range(count):
             m[forces + i] += t * m[step + i]
 
 
 @compiled
-def slope_at(
-    p: Array,
-    at: int,
-    rows: int,
-    count: int,
-    m: Array,
-    states: int,
-    forces: int,
-    w: int,
-    step: int,
-    moved: int,
-    period: float,
-    t: float,
-) -> float:
+def slope_at(p: Array, at: int, m: Array, states: int, free: int, t: float) -> float:
     """The slope of P along a step, at the part t of it."""
+    count, rows = int(p[at + OTHERS]), at + int(p[at + OTHER_ROWS])
+    w, step, moved = free + count, free + 3 * count, free + 4 * count
     total = 0.0
     for i in range(count):
         row = rows + ROW * i
         there = m[w + i] + t * m[moved + i]
-        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, period)
-        total += m[moved + i] * (f - m[forces + i] - t * m[step + i])
+        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, p[at + PERIOD])
+        total += m[moved + i] * (f - m[states + count + i] - t * m[step + i])
     return total
 
 
 @compiled
-def how_far(
-    p: Array,
-    at: int,
-    rows: int,
-    count: int,
-    m: Array,
-    states: int,
-    forces: int,
-    w: int,
-    step: int,
-    moved: int,
-    period: float,
-) -> float:
+def how_far(p: Array, at: int, m: Array, states: int, free: int) -> float:
     """The whole step where the slope has fallen to half there; else where it is about 0."""
-    first = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 0.0)
+    first = slope_at(p, at, m, states, free, 0.0)
     low, high = 0.0, 1.0
-    last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 1.0)
+    last = slope_at(p, at, m, states, free, 1.0)
     while last < 0.5 * first and high < 1e6:
         low, high = high, 2.0 * high
-        last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, high)
+        last = slope_at(p, at, m, states, free, high)
     if last <= -0.5 * first:
         return high
     for _ in range(STEPS):
         t = 0.5 * (low + high)
-        here = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, t)
+        here = slope_at(p, at, m, states, free, t)
         if abs(here) <= 0.1 * abs(first):
             return t
         if here < 0.0:

@@ -16,13 +16,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from zwidth.errors import InputError
-from zwidth.lazy import above
 from zwidth.model.environment.environment import CouplingLaw, Environment, RationalFunction, Stepped
 from zwidth.model.scene.element import GROUND, Element, Ties, read_node, ties
+from zwidth.quantity.documented import Pictured
 from zwidth.quantity.parameter import Reads, part
 from zwidth.showing import Part, Shown, Table
 
@@ -56,7 +55,7 @@ def _port(given: Any, name: str) -> str:
 
 
 @dataclass(frozen=True, repr=False)
-class Scene(Environment, Shown):
+class Scene(Environment, Pictured):
     """Masses, springs, dampers, contacts, friction and levers, stepped so that no energy is made.
 
     It is at rest where a touch starts, by default at x = 0, and positions are counted from there.
@@ -76,6 +75,8 @@ class Scene(Environment, Shown):
         If there is no element, the port is no node of them, or tied to the ground; or when it is used, if a
         node is held by nothing but what may let go of it.
     """
+
+    _PICTURE = "plot_scene"
 
     elements: Reads[tuple[Element, ...], Iterable[Element]] = part(
         "elements", _elements, meaning="masses, springs, … and their nodes"
@@ -189,24 +190,6 @@ class Scene(Environment, Shown):
 
         elements, port = coupled(self.elements, self.port, couplings, sample_period)
         return pack([e for e in elements if e.ratio is None], ties(elements, port), sample_period)
-
-    def plot(self, path: str | Path | None = None) -> Any:
-        """Its drawing, a matplotlib figure that belongs to no window; saved where a path is given.
-
-        Parameters
-        ----------
-        path
-            Ends in .png, .svg or .pdf.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        figure = above("plots").plot_scene(self)
-        if path is not None:
-            above("plots").save_figure(lambda: figure, path, overwrite=True)
-        return figure
 
     def report(self) -> Iterable[Part]:
         """Its elements, one to a row."""

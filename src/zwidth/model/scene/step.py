@@ -11,7 +11,6 @@ step depends on nothing but these.
 from __future__ import annotations
 
 from zwidth.model.scene.forces import (
-    COMPLIANCE,
     FACTOR,
     FORCE,
     HEADER,
@@ -70,7 +69,7 @@ def scene_force(p: Array, at: int, m: Array, slot: int, reading: float) -> float
     period, count = p[at + PERIOD], int(p[at + NODES])
     linear, others = int(p[at + LINEAR]), int(p[at + OTHERS])
     rows, other_rows = at + HEADER, at + int(p[at + OTHER_ROWS])
-    factor, compliance = at + int(p[at + FACTOR]), at + int(p[at + COMPLIANCE])
+    factor = at + int(p[at + FACTOR])
     waves = slot + WAVES
     states = waves + linear
     forces = states + others
@@ -94,7 +93,7 @@ def scene_force(p: Array, at: int, m: Array, slot: int, reading: float) -> float
         free = room + count
         for e in range(others):
             m[free + e] = across(p, other_rows + ROW * e, m, nodes, v)
-        coupled_forces(p, at, other_rows, compliance, others, m, states, forces, free, period)
+        coupled_forces(p, at, m, states, free)
         for i in range(count):
             m[nodes + i] = m[room + i]
         for e in range(others):

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -326,11 +327,20 @@ def _parse(text: str, name: str) -> dict[str, Any]:
 
 def _text(source: Path | str) -> str:
     path, name = Path(source), f'"{_shown(source)}"'
+    return text_of(path, name, "specification", "TOML file", partial(_not_there, path, name))
+
+
+def text_of(path: Path, name: str, what: str, kind: str, missing: Callable[[], str]) -> str:
+    """The text of a file that is a page: what is no file, larger, or no UTF-8 is refused.
+
+    `name`, `what`, `kind`: the file, what it holds and what such files are, in messages.
+    `missing`: what is said where there is none.
+    """
     try:
         if path.is_dir():
-            raise InputError(f"{name} is a directory; give the TOML file in it")
+            raise InputError(f"{name} is a directory; give the {kind} in it")
         if not path.exists():
-            raise InputError(_not_there(path, name))
+            raise InputError(missing())
         if not path.is_file():
             raise InputError(f"{name} is not a regular file")
         with path.open("rb") as file:
@@ -341,9 +351,7 @@ def _text(source: Path | str) -> str:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{name} cannot be read: {reason}") from None
     if len(content) > LARGEST_FILE:
-        raise InputError(
-            f"{name} is larger than {LARGEST_FILE // 1024} KiB; a specification is a page of text"
-        )
+        raise InputError(f"{name} is larger than {LARGEST_FILE // 1024} KiB; a {what} is a page of text")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -10,7 +10,7 @@ Each quantity carries its unit.  What is written is read again and compared befo
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
@@ -42,8 +42,8 @@ def tables(device: Device, environment: Environment) -> Tables:
     """The loop as the tables that `written` writes, each quantity a text with its unit."""
     chain = getattr(environment, "laws", ())
     inner = environment.environment if chain else environment  # type: ignore[attr-defined]
-    laws = tuple(_law(link, LAWS, device.motion) for link in chain)
-    return Tables(device_table(device), _environment(inner, device.motion), laws)
+    laws = tuple(_written(link, LAWS, device.motion) for link in chain)
+    return Tables(device_table(device), _written(inner, TYPES, device.motion), laws)
 
 
 def written(device: Device, environment: Environment) -> str:
@@ -51,7 +51,7 @@ def written(device: Device, environment: Environment) -> str:
     values = tables(device, environment)
     rows = [("[device]", values.device), ("[environment]", values.environment)]
     rows += [("[[law]]", law) for law in values.laws]
-    text = "\n".join(line for head, row in rows for line in (head, *lines(row), ""))
+    text = _text(rows)
     again = parsed(text)
     if (again.device.replace(name=device.name), again.environment) != (device, environment):
         raise InputError(f"a specification cannot say all of this: {environment.describe(device.motion)}")
@@ -60,7 +60,7 @@ def written(device: Device, environment: Environment) -> str:
 
 def written_environment(environment: Environment, motion: str = "linear") -> str:
     """The environment alone, as the file that stands beside a device: `zwidth check DEVICE FILE`."""
-    text = "\n".join(["[environment]", *lines(_environment(environment, motion)), ""])
+    text = _text([("[environment]", _written(environment, TYPES, motion))])
     again = build_environment(tables_of(text, "environment")["environment"], motion)
     if again != environment:
         raise InputError(f"a specification cannot say all of this: {environment.describe(motion)}")
@@ -73,6 +73,10 @@ def parsed(text: str, name: str = "specification") -> Specification:
     loop = specified({kind: table for kind, table in found.items() if kind != "law"})
     row = found.get("law")
     return Specification(loop.device, with_laws(loop.environment, row, None, loop.device.motion))
+
+
+def _text(tables: Iterable[tuple[str, Mapping[str, object]]]) -> str:
+    return "\n".join(line for head, row in tables for line in (head, *lines(row), ""))
 
 
 def lines(values: Mapping[str, object]) -> Iterator[str]:
@@ -116,24 +120,28 @@ def quantity_text(value: Exact | Interval | int, unit: str) -> object:
     return number if unit in ("", "1") else f"{number} {unit}"
 
 
-def _environment(environment: Environment, motion: str) -> dict[str, object]:
-    name = name_of(environment, TYPES)
+def _written(thing: object, kinds: Mapping[str, Kind], motion: str) -> dict[str, object]:
+    name = name_of(thing, kinds)
     if name is None:
-        raise InputError(f"a specification has no {type(environment).__name__}")
+        raise InputError(f"a specification has no {type(thing).__name__}")
     values: dict[str, object] = {"type": name}
-    for key, kind in TYPES[name].keys.items():
-        value = getattr(environment, key)
+    for key, kind in kinds[name].keys.items():
+        value = getattr(thing, key)
         if kind.form == "branches":
             values[key] = [_branch(branch, motion) for branch in value]
-        elif kind.form == "environment":
-            values[key] = _environment(value, motion)
         elif kind.form == "elements":
-            values[key] = [_law(element, ELEMENTS, motion) for element in value]
+            values[key] = [_written(element, ELEMENTS, motion) for element in value]
+        elif kind.form in _INNER:
+            values[key] = _written(value, _INNER[kind.form], motion)
         elif kind.form == "velocity filter":
             values[key] = _filter(value)
         elif value is not None:
             values[key] = _value(value, kind.unit_for(motion))
     return values
+
+
+_INNER: Mapping[str, Mapping[str, Kind]] = {"environment": TYPES, "velocity": ESTIMATORS}
+"""By form, what stands in a table of its own inside another."""
 
 
 def _value(value: Any, unit: str) -> object:
@@ -160,20 +168,6 @@ def _filter(estimate: object) -> dict[str, object]:
     raise InputError(f"a specification has no {type(estimate).__name__}")
 
 
-def _law(law: object, kinds: Mapping[str, Kind], motion: str) -> dict[str, object]:
-    name = name_of(law, kinds)
-    if name is None:
-        raise InputError(f"a specification has no {type(law).__name__}")
-    values: dict[str, object] = {"type": name}
-    for key, kind in kinds[name].keys.items():
-        value = getattr(law, key)
-        if kind.form == "velocity":
-            values[key] = _law(value, ESTIMATORS, motion)
-        elif value is not None:
-            values[key] = _value(value, kind.unit_for(motion))
-    return values
-
-
 def written_pair(pair: Pair) -> str:
     """A pair as a specification in TOML."""
     tables = [
@@ -181,7 +175,7 @@ def written_pair(pair: Pair) -> str:
         ("[follower]", device_table(pair.follower)),
         ("[coupling]", _coupling(pair)),
     ]
-    text = "\n".join(line for head, row in tables for line in (head, *lines(row), ""))
+    text = _text(tables)
     if pair_of(tables_of(text, "specification", PAIR_TABLES)) != pair:
         raise InputError("a specification cannot say all of this pair")
     return text

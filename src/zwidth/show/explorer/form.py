@@ -148,14 +148,10 @@ def group(title: str, controls: Iterable[Mapping[str, Any]], folded: bool = Fals
 
 def shown(control: Control, below: str = "") -> dict[str, Any]:
     """A control as the page takes it, with a line below it until it is set."""
+    own = ("path", "label", "meaning", "text", "place", "required")
     return {
-        "path": control.path,
+        **{key: getattr(control, key) for key in own},
         "sort": "choice" if control.sort == "word" else control.sort,
-        "label": control.label,
-        "meaning": control.meaning,
-        "text": control.text,
-        "place": control.place,
-        "required": control.required,
         "below": below,
         "words": [[word, word] for word in control.words],
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -15,7 +15,6 @@ from zwidth.data.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.data.identification.device.pulses import PIECES, pulse
 from zwidth.data.identification.device.table import percent, rows, title
 from zwidth.data.tissue.experiment.history import History
-from zwidth.data.tissue.model import Model
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import ends
@@ -41,6 +40,8 @@ from zwidth.show.plots.style import (
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from zwidth.data.tissue.result import TissueFit
 
 
 _BEYOND = 1.15
@@ -294,37 +295,8 @@ def _speed(identified: IdentifiedNumbers) -> str:
 MOST_DOTS = 4000
 
 
-class Fit(Protocol):
-    @property
-    def time(self) -> Array | None:
-        """Of the samples [s]."""
-
-    @property
-    def output(self) -> Array:
-        """What was measured, in SI."""
-
-    @property
-    def residuals(self) -> Array:
-        """Measured less fitted, in SI."""
-
-    @property
-    def response(self) -> str:
-        """What was measured, force or position."""
-
-    @property
-    def motion(self) -> str:
-        """Linear or rotary."""
-
-    @property
-    def model(self) -> Model:
-        """Which model was fitted."""
-
-    def table(self) -> list[list[str]]:
-        """Its numbers, a line each, below a line of headings."""
-
-
 @rc_context(LOOK)
-def fit_figure(fit: Fit) -> Figure:
+def fit_figure(fit: TissueFit) -> Figure:
     """Measured and fitted against the time; below, what is left over.
 
     Raises
@@ -343,14 +315,14 @@ def fit_figure(fit: Fit) -> Figure:
     return figure
 
 
-def fit_title(fit: Fit) -> str:
+def fit_title(fit: TissueFit) -> str:
     """The model and its numbers, on a line."""
     rows = fit.table()[1 : 1 + len(fit.model.parameters)]
     numbers = ", ".join(f"{row[0].replace('_', ' ')} {float(row[1]):.4g} {row[3]}" for row in rows)
     return f"{fit.model.name}: {numbers}"
 
 
-def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
+def draw_fit(axes: Axes, fit: TissueFit, time: Array) -> None:
     factor, unit = scale(fit.output, quantity_unit(fit.response, fit.motion))
     every = slice(None, None, max(1, time.size // MOST_DOTS))
     axes.plot(time[every], factor * fit.output[every], ".", ms=5, color=GREY, mew=0, label="measured")
@@ -361,7 +333,7 @@ def draw_fit(axes: Axes, fit: Fit, time: Array) -> None:
     legend(axes)
 
 
-def draw_left(axes: Axes, fit: Fit, time: Array) -> None:
+def draw_left(axes: Axes, fit: TissueFit, time: Array) -> None:
     """Measured less fitted: noise, if the model is right."""
     factor, unit = scale(fit.residuals, quantity_unit(fit.response, fit.motion))
     every = slice(None, None, max(1, time.size // MOST_DOTS))
@@ -372,7 +344,7 @@ def draw_left(axes: Axes, fit: Fit, time: Array) -> None:
 
 
 @rc_context(LOOK)
-def test_figure(test: History, best: Fit) -> Figure:
+def test_figure(test: History, best: TissueFit) -> Figure:
     """The response with the fit, what is left over, and the history that it answers."""
     figure = new_figure(height=6.8)
     above, below, history = figure.subplots(3, 1, sharex=True, height_ratios=(2.2, 1.0, 1.0))

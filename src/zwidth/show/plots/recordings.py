@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from matplotlib import rc_context
@@ -155,27 +155,7 @@ def draw_lateness(axes: Axes, checkup: Any) -> None:
     legend(axes)
 
 
-class Shaking(Protocol):
-    """What is drawn of any vibration."""
-
-    @property
-    def vibration(self) -> Vibration:
-        """Where, how fast, how far."""
-
-    @property
-    def rotary(self) -> bool:
-        """Of what turns."""
-
-    @property
-    def supplied(self) -> Mapping[str, float]:
-        """[J] by each term in a cycle."""
-
-    @property
-    def lost(self) -> float | None:
-        """[J] that friction takes in a cycle."""
-
-
-Drawn = TypeVar("Drawn", bound=Shaking)
+Drawn = TypeVar("Drawn", "Evidence", "PairEvidence")
 
 _CYCLES = 8
 """That are drawn as they went."""
@@ -234,7 +214,7 @@ def _cycles(axes: Axes, recording: Recording, seen: Evidence) -> None:
     legend(axes, [*axes.get_lines(), *beside.get_lines()])
 
 
-def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
+def _spectrum(axes: Axes, recording: Recording, seen: Evidence | PairEvidence) -> None:
     """Amplitude against frequency, up to six times that of the vibration."""
     vibration = seen.vibration
     x = recording.position[vibration.rows]
@@ -252,7 +232,7 @@ def _spectrum(axes: Axes, recording: Recording, seen: Shaking) -> None:
     legend(axes)
 
 
-def _energy(axes: Axes, seen: Shaking) -> None:
+def _energy(axes: Axes, seen: Evidence | PairEvidence) -> None:
     """A bar for each term of the energy of a cycle."""
     terms = {name: work for name, work in seen.supplied.items() if work}
     if seen.lost is not None:

@@ -27,9 +27,8 @@ from zwidth.show.plots.style import (
     legend,
     legend_of_all,
     new_figure,
-    number,
     page_heading,
-    scale,
+    quantity_text,
     verbatim,
 )
 from zwidth.showing import printable
@@ -138,28 +137,29 @@ def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
 def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
     """What the hand and the actuator put in, and what friction took; below 0 the hand has got out energy."""
     time = timed(trace)[0]
-    names = {
-        "hand_work": (BLACK, "--", "from the hand"),
-        "actuator_work": (PURPLE, "-", "from the actuator"),
-        "loss": (GREEN, "-.", "lost in friction"),
-        "kinetic_energy": (BLUE, "-", "kinetic"),
-    }
-    if "transmission_energy" in trace:
-        names["transmission_energy"] = (GREY, ":", "in the transmission")
     lost = trace["viscous_loss"].values + trace["coulomb_loss"].values
     lost = lost + trace["transmission_loss"].values if "transmission_loss" in trace else lost
-    curves = {name: lost if name == "loss" else trace[name].values for name in names}
-    factor, text = axis([max(float(np.abs(c).max()) for c in curves.values())], "energy")
+    curves: dict[str, tuple[str, str, Array]] = {
+        "from the hand": (BLACK, "--", trace["hand_work"].values),
+        "from the actuator": (PURPLE, "-", trace["actuator_work"].values),
+        "lost in friction": (GREEN, "-.", lost),
+        "kinetic": (BLUE, "-", trace["kinetic_energy"].values),
+    }
+    if "transmission_energy" in trace:
+        curves["in the transmission"] = (GREY, ":", trace["transmission_energy"].values)
+    _draw_energies(axes, time, curves)
+    if (book := ledger(trace)).active:
+        out = quantity_text(book.extracted, "energy")
+        heading(axes, f"the hand got out {out}: this loop is active", color=RED)
+
+
+def _draw_energies(axes: Axes, time: Array, curves: Mapping[str, tuple[str, str, Array]]) -> None:
+    factor, text = axis([max(float(np.abs(c).max()) for *_, c in curves.values())], "energy")
     axes.set_ylabel(text)
-    for name, (colour, line, text) in names.items():
-        axes.plot(*thinned(time, curves[name] * factor), color=colour, ls=line, lw=1.3, label=text)
+    for name, (colour, line, curve) in curves.items():
+        axes.plot(*thinned(time, curve * factor), color=colour, ls=line, lw=1.3, label=name)
     axes.axhline(0, color=GREY, lw=0.8)
     legend(axes)
-    book = ledger(trace)
-    if book.active:
-        out = book.extracted
-        f, u = scale([out], "J")
-        heading(axes, f"the hand got out {number(out * f)} {u}: this loop is active", color=RED)
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:
@@ -238,16 +238,7 @@ def draw_pair_energies(axes: Axes, trace: xr.Dataset) -> None:
         "lost in friction": (GREEN, "-.", (ratio * lost).sum(axis=0)),
         "kinetic": (BLUE, "-", (ratio * trace["kinetic_energy"].values).sum(axis=0)),
     }
-    factor, text = axis([max(float(np.abs(c).max()) for *_, c in curves.values())], "energy")
-    axes.set_ylabel(text)
-    for name, (colour, line, curve) in curves.items():
-        axes.plot(*thinned(time, curve * factor), color=colour, ls=line, lw=1.3, label=name)
-    axes.axhline(0, color=GREY, lw=0.8)
-    legend(axes)
+    _draw_energies(axes, time, curves)
     if book.active:
-        f, u = scale([book.extracted], "J")
-        heading(
-            axes,
-            f"{number(book.extracted * f)} {u} came out beyond what was in it: this pair is active",
-            color=RED,
-        )
+        out = quantity_text(book.extracted, "energy")
+        heading(axes, f"{out} came out beyond what was in it: this pair is active", color=RED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from zwidth.model.device.device import Device
@@ -23,6 +24,10 @@ _PRESS = "Take the handle, push it slowly into the wall, hold it there, then let
 
 LIGHT = LinearHand(mass=0.006, stiffness=200.0, damping=0.2)
 """A hand that holds the handle with two finger tips [kg, N/m, N·s/m]: it damps little."""
+
+
+_pressed = partial(played, hand=LIGHT, do=_PRESS)
+_led = partial(played_pair, hand=LIGHT, follower=_SPRING)
 
 
 def presets() -> list[Played]:
@@ -59,12 +64,10 @@ def _passive() -> Played:
 
 
 def _buzz() -> Played:
-    return played(
+    return _pressed(
         _smooth(resolution="0.3 mm"),
         Wall(1500, 10),
         name="Buzz: a coarse encoder",
-        hand=LIGHT,
-        do=_PRESS,
         notice="Each count is a jump of the measured velocity, and of the damper's force: it buzzes.",
     )
 
@@ -126,29 +129,23 @@ def _hard_wall() -> list[Played]:
     counted = _smooth()
     controller = PassivityController(largest_damping="unlimited")
     return [
-        played(
+        _pressed(
             ideal,
             wall,
             name="Too hard a wall",
-            hand=LIGHT,
-            do=_PRESS,
             notice="It kicks the hand back, and the hand gets out more energy than it put in.",
         ),
-        played(
+        _pressed(
             ideal,
             render(wall, controller),
             name="The same, passivity controller on",
-            hand=LIGHT,
-            do=_PRESS,
             notice="Energy that is about to come out is taken by damping: the kicks are gone. "
             "What is proved of it is said above, and no more.",
         ),
-        played(
+        _pressed(
             counted,
             render(wall, ForceBounding()),
             name="The same, force bounding on",
-            hand=LIGHT,
-            do=_PRESS,
             notice="The force is never more than what the hand has paid for: softer, and proved.",
         ),
     ]
@@ -158,19 +155,15 @@ def _arms() -> list[Played]:
     arm = _smooth(damping="0.15 N*s/m", force_limit="1 N")
     near = Pair(arm, arm, stiffness=100, damping="0.02")
     return [
-        played_pair(
+        _led(
             near,
             name="Two arms, no delay",
-            hand=LIGHT,
-            follower=_SPRING,
             do="Lead one arm; the other follows, tied to a spring.",
             notice="The hand feels the spring that the follower pulls at.",
         ),
-        played_pair(
+        _led(
             near.replace(delay="20 ms"),
             name="Two arms, a link of 20 ms",
-            hand=LIGHT,
-            follower=_SPRING,
             do="Lead one arm quickly to and fro, then let go.",
             notice="Each arm is told where the other was 20 ms ago: they swing, and go on.",
         ),
