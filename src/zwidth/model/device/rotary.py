@@ -27,9 +27,15 @@ from zwidth.quantity.parameter import Given, plain, read_number
 def rotary(
     *,
     inertia: Given | None = None,
+    damping: Given,
+    coulomb_friction: Given | None = None,
+    stiction: Given | None = None,
+    friction_speed: Given | None = None,
     resolution: Given | None = None,
     counts_per_turn: Given | None = None,
     handle_radius: Given | None = None,
+    force_limit: Given | None = None,
+    force_resolution: Given | None = None,
     **rest: Any,
 ) -> Device:
     """A rotary device; with `handle_radius`, its linear equivalent at the handle.
@@ -38,6 +44,12 @@ def rotary(
     ----------
     inertia
         J about the axis, > 0 [kg·m²]; None where unknown.
+    damping
+        Viscous friction b, ≥ 0 [N·m·s/rad].
+    coulomb_friction
+        Coulomb friction torque τ_c, ≥ 0 [N·m].
+    stiction
+        Largest friction torque at rest, ≥ τ_c [N·m]; None: τ_c.
     resolution, counts_per_turn
         Δθ [rad], or N > 0 and then Δθ = 2π/N to double precision; one of the two at most. N is counts, not
         lines: with quadrature decoding an encoder of 500 lines gives 2000 counts per turn, at the axis whose
@@ -45,10 +57,12 @@ def rotary(
     handle_radius
         r > 0 [m]. With it the result has motion "linear", in newtons and
         metres at the handle; without it "rotary", in N·m and rad.
+    friction_speed
+        Speed up to which the friction was seen, > 0 [rad/s]; None: it holds at every speed.
+    force_limit, force_resolution
+        Of the actuator, as torques [N·m].
     rest
-        The other arguments of `Device`: damping b ≥ 0 [N·m·s/rad], coulomb_friction τ_c ≥ 0 and stiction
-        ≥ τ_c [N·m], friction_speed > 0 [rad/s], force_limit and force_resolution, as torques [N·m]; rate or
-        sample_period, delay, …
+        The other arguments of `Device`: rate or sample_period, delay, …
     """
     if counts_per_turn is not None:
         if resolution is not None:
@@ -56,8 +70,17 @@ def rotary(
                 "give either resolution [rad] or counts_per_turn, got both; one follows from the other"
             )
         resolution = _count_angle(counts_per_turn)
-    mass = None if inertia is None else _positive(inertia, "inertia", "a body has inertia")
-    device = Device(mass=mass, resolution=resolution, motion="rotary", **rest)
+    given: dict[str, Any] = {
+        "mass": None if inertia is None else _positive(inertia, "inertia", "a body has inertia"),
+        "damping": damping,
+        "coulomb_friction": coulomb_friction,
+        "stiction": stiction,
+        "friction_speed": friction_speed,
+        "resolution": resolution,
+        "force_limit": force_limit,
+        "force_resolution": force_resolution,
+    }
+    device = Device(**given, motion="rotary", **rest)
     if handle_radius is None:
         return device
     return at_handle(device, _positive(handle_radius, "handle_radius", "the handle turns about the axis"))
