@@ -14,7 +14,7 @@ from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.storage.domain import Losses
 from zwidth.passivity.storage.grid import Grid
-from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds, max_mean_speed
+from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.storage_function import loop_document
 from zwidth.passivity.storage.value_iteration import ValueIteration
@@ -84,7 +84,7 @@ class Gain(Evidence):
     @cached_property
     def peak_speed(self) -> float:
         """Largest mean speed of the whole motion, over each time in which one force is held [m/s; rad/s]."""
-        return float(max_mean_speed(self.motion, self.losses.period, self.losses.part))
+        return float(self.motion.peak_speed(self.losses.period, self.losses.part))
 
     @cached_property
     def depth(self) -> float:

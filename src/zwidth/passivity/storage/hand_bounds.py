@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 from zwidth.errors import InputError
@@ -96,16 +95,6 @@ def hand_bounds(law: FiniteLaw, losses: Losses, domain: Domain) -> HandBounds:
         step,
         losses.period,
     )
-
-
-def max_mean_speed(motion: Motion, period: Fraction, part: Fraction) -> Fraction:
-    """Largest mean speed over each time in which one force is held [m/s; rad/s]."""
-    x, switches = motion.positions, motion.switch_positions
-    if not switches:
-        return max(abs(b - a) for a, b in pairwise(x)) / period
-    early = max(abs(m - a) for a, m in zip(x[:-1], switches, strict=True)) / part
-    late = max(abs(b - m) for b, m in zip(x[1:], switches, strict=True)) / (1 - part)
-    return max(early, late) / period
 
 
 # Slow hands: what covers every hand with more damping covers slow ones with more Coulomb friction.
