@@ -47,6 +47,13 @@ def test_each_has_the_verdict_of_check(run):
     run(f"{KITS} --stiffness 40")
 
 
+def test_a_pattern_is_the_files_that_match(run, refused):
+    """A class on Windows, whose shells leave it as it is; the value of an option stays."""
+    assert run("each --json 'kit-?.toml' --stiffness 10").json == run(f"{KITS} --stiffness 10 --json").json
+    assert "class*.csv cannot be read" in refused("each 'kit-*.toml' --stiffness 10 --measured 'class*.csv'")
+    assert "there is no file" in refused("each 'kat-*.toml' --stiffness 10")
+
+
 def test_what_was_measured_stands_beside_it(run):
     """In units of the head or its own; what shook below the proof is named, the unmeasured has none."""
     out = run(f"{KITS} --stiffness 100 --measured class.csv -o table.csv", 1).words

@@ -284,7 +284,7 @@ def test_a_clear_violation_is_shown_by_a_short_motion(name, delay):
 
 
 def test_how_deep_and_fast_a_motion_is_counts_what_it_does_between_samples():
-    """A force that comes 0.25 ms after its sample is turned against there: depth and speed are of that too."""
+    """A force that comes 0.25 ms after its sample is turned against there: both are of that too."""
     late = zw.Device(damping="0.15", coulomb_friction="0.1", resolution="13.1 um", rate=1000, delay="0.25 ms")
     verdict = zw.check(late, zw.Wall(600_000))
     told = verdict.witness.to_dict()

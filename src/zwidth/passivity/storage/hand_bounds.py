@@ -15,7 +15,6 @@ from zwidth.passivity.linear.contact import DampedWall, enough_damping
 from zwidth.passivity.scope import Hands, unit_key
 from zwidth.passivity.storage.domain import Domain, Losses
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.witness.motion import Motion
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 from zwidth.quantity.units import parse_number

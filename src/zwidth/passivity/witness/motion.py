@@ -92,8 +92,7 @@ class Motion:
         return self._deepest((self.positions[0], *map(max, self.positions[1:], later)))
 
     def peak_speed(self, period: Fraction, part: Fraction) -> Fraction:
-        """Largest mean speed over each time in which one force is held [m/s; rad/s]; a force changes `part` of
-        a sample after it."""
+        """Largest mean speed over each time in which one force is held, by `part` of a sample late."""
         x, switches = self.positions, self.switch_positions
         if not switches:
             return max(abs(b - a) for a, b in pairwise(x)) / period
