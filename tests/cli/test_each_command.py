@@ -104,6 +104,7 @@ def test_bad_input(refused, typed, said):
         ("kit-1,-4", "is > 0"),
         ("kit-1,3 kg", "stiffness is in"),
         ("kit-1,4\nkit-1,5", "stands there twice"),
+        ("kit-1,4.1.2", "stiffness is in"),
     ],
 )
 def test_bad_tables(refused, line, said):
@@ -111,6 +112,17 @@ def test_bad_tables(refused, line, said):
     err = refused("each kit-1.toml kit-2.toml --stiffness 9 --measured bad.csv")
     assert said in err
     assert "bad.csv" in err
+
+
+def test_a_table_as_a_spreadsheet_saves_it(run, refused):
+    """Decimal commas between semicolons; where nobody measured an empty cell; an empty file says so."""
+    Path("class.csv").write_text("device;stiffness [N/m]\r\nkit-1;410,5\r\nkit-2;\r\n", encoding="utf-8-sig")
+    found = run("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv --json").json["devices"]
+    assert [device.get("measured_stiffness_N_per_m") for device in found] == [410.5, None]
+    Path("class.csv").write_text("device;stiffness\nkit-1;1,018\n", encoding="utf-8")
+    assert "with a point" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
+    Path("class.csv").write_text("\n", encoding="utf-8")
+    assert "is empty" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
 
 
 def test_an_encoder_on_the_motor(run, refused):

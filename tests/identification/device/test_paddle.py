@@ -183,6 +183,12 @@ def test_free_decay_with_a_known_mass():
         assert found.estimates[name].value == pytest.approx(TRUE[name], rel=0.01)
     with pytest.raises(InputError, match="give the mass"):
         identify(log)
+    apart = np.concatenate([0.7 * k + np.arange(500) * 1e-3 for k in range(60)])
+    cut = Log.from_arrays(time=apart, position=position, resolution=22.4e-6)
+    with pytest.raises(InputError, match="zero of the force is fitted too"):
+        identify(cut, mass=0.036)
+    again = identify(cut, mass=0.036, zero="exact").estimates["damping"]
+    assert again.value == pytest.approx(TRUE["damping"], rel=0.01)
 
 
 @settings(max_examples=8)

@@ -136,6 +136,7 @@ LARGEST_FILE = 1 << 20
 """Bytes of a table of what was measured."""
 
 _UNIT = re.compile(r"\[([^]]*)\]")
+_COMMA = re.compile(r"(?<=\d),(?=\d)(?!\d{3}\b)")
 
 
 @dataclass(frozen=True, repr=False)
@@ -282,7 +283,7 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
     A line for each device, its name and the stiffness, with a unit or in that of the head: "stiffness [N/m]".
     """
     rows, unit = _lines(path), GLOSSARY["stiffness"].unit_for(motion)
-    bracket = _UNIT.search(" ".join(rows[0][1:2])) if rows else None
+    bracket = _UNIT.search(" ".join(rows[0][1:2]))
     found: dict[str, float] = {}
     for number, row in enumerate(rows, 1):
         if number == 1 and len(row) > 1 and not any(map(str.isdigit, row[1])):
@@ -293,6 +294,8 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
                 f'{where}: a device and a stiffness, such as "kit-1, 240 N/m"; got {quoted(",".join(row))}'
             )
         name, text = csv_cell(row[0]).strip(), row[1].strip()
+        if not text:
+            continue  # it did not shake, or nobody tried
         bare = not any(map(str.isalpha, text))
         try:
             value = float(
@@ -319,6 +322,9 @@ def _lines(path: Path) -> list[list[str]]:
     if len(text.encode()) > LARGEST_FILE:
         raise InputError(f"{plain(str(path), 100)} is larger than a megabyte, and no table of a class is")
     separator = ";" if ";" in text.partition("\n")[0] else ","
-    return [
-        row for row in csv.reader(StringIO(text), delimiter=separator) if any(cell.strip() for cell in row)
-    ]
+    rows = [row for row in csv.reader(StringIO(text), delimiter=separator) if any(map(str.strip, row))]
+    if separator == ";":  # a spreadsheet that writes decimal commas; 1,018 may be a thousand
+        rows = [[row[0], *(_COMMA.sub(".", cell) for cell in row[1:])] for row in rows]
+    if not rows:
+        raise InputError(f"{plain(str(path), 100)} is empty; a line is, for example, kit-1, 240 N/m")
+    return rows

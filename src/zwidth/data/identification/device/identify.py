@@ -66,12 +66,12 @@ def identify_log(
     estimates, fit = found.estimates(names), found.regression(names)
     viscous = found.regression(tuple(n for n in names if n not in ("coulomb_friction", "slow")))
     if estimates is None or fit is None or viscous is None:
-        raise InputError(too_little(log))
+        raise InputError(too_little(log, zero))
     seen = found.points.labelled(fit, mass, log.motion)
     quickest = fastest(seen)
     directions, slopes = found.directions(names), found.slopes(names, min(quickest))
     if directions is None or slopes is None or not min(quickest) > 0:
-        raise InputError(too_little(log))
+        raise InputError(too_little(log, zero))
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     shaken = model == "Coulomb and viscous" and mass is None and seen_to_swing(log, estimates, late)
     apart = two_masses(log, estimates, late) if shaken else None
