@@ -120,7 +120,7 @@ def test_a_table_as_a_spreadsheet_saves_it(run, refused):
     found = run("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv --json").json["devices"]
     assert [device.get("measured_stiffness_N_per_m") for device in found] == [410.5, None]
     Path("class.csv").write_text("device;stiffness\nkit-1;1,018\n", encoding="utf-8")
-    assert "with a point" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
+    assert "without a comma" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
     Path("class.csv").write_text("\n", encoding="utf-8")
     assert "is empty" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
 

@@ -191,6 +191,21 @@ def test_free_decay_with_a_known_mass():
     assert again.value == pytest.approx(TRUE["damping"], rel=0.01)
 
 
+def test_a_hand_whose_force_is_not_logged_is_asked_for(recording):
+    """Where a motor's spring pushes and nothing yields, the device would have a spring below 0."""
+    log = Log.from_arrays(
+        time=recording.time,
+        position=recording.position,
+        actuator_force=100 * recording.position,
+        resolution=22.4e-6,
+    )
+    found = identify(log, mass=0.036)
+    assert found.estimates["spring"].value < 0
+    assert "a hand whose force is not in the log" in next(
+        f.text for f in found.findings if f.kind == "spring"
+    )
+
+
 @settings(max_examples=8)
 @given(st.floats(0.1, 10), st.floats(0.1, 10))
 def test_units_do_not_matter(recording, found, length, force):

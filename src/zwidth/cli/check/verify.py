@@ -73,7 +73,8 @@ def judged(path: str) -> Judged:
         return judge_file(path)
     except Unreadable as error:
         missing = did_you_mean(Path(path)) if not Path(path).exists() else ""
-        raise InputError(f"{path}: {error}{missing}") from None
+        inside = "; name the file in it" if Path(path).is_dir() else ""
+        raise InputError(f"{path}: {error}{missing}{inside}") from None
 
 
 def _with_laws(found: Judged) -> tuple[Judged, dict[str, str]]:

@@ -50,6 +50,10 @@ def findings(
                 if name == "slow"
                 else ""
             )
+            if name == "spring" and estimates[name].interval()[1] < 0:
+                until = (
+                    "; below 0: gravity on a handle above its axis, or a hand whose force is not in the log"
+                )
             text = f"{what} is seen and fitted: {estimates[name]}{until}"
             yield Finding(kind=_KINDS.get(name, name.replace("_", " ")), text=text)
     yield from _bend(found, names, slopes, speed)
