@@ -221,6 +221,7 @@ def test_units_do_not_matter(recording, found, length, force):
     ("options", "samples", "words"),
     [
         ({"mass": -1.0}, 60_000, "mass must be > 0"),
+        ({"mass": 36}, 60_000, 'write "36 g", or "36 kg"'),
         ({"delay": -1e-3}, 60_000, "delay must be ≥ 0"),
         ({"zero": "free"}, 60_000, "zero is"),
         ({"model": "stick"}, 60_000, 'model is "Coulomb and viscous" or "viscous"'),

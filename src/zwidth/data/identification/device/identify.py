@@ -31,6 +31,7 @@ from zwidth.data.identification.device.two_masses import seen_to_swing, two_mass
 from zwidth.data.logs import Log, read_log
 from zwidth.errors import InputError
 from zwidth.lazy import above
+from zwidth.model.specification.read import question_unit
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Shown
@@ -171,9 +172,18 @@ def identify(
         If the recording cannot be read or shows too little: too few strokes, or no force and no mass.
     """
     log = log_from(recording, **reading)
-    known = None if mass is None else float(parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass"))
+    known = None if mass is None else parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass")
+    if known is not None and log.motion == "linear":
+        question_unit(mass, known, "mass", "kg")
     late = float(parse_number(delay, "s", "delay"))
-    return identify_log(log, mass=known, delay=late, zero=zero, model=model, progress=progress)
+    return identify_log(
+        log,
+        mass=None if known is None else float(known),
+        delay=late,
+        zero=zero,
+        model=model,
+        progress=progress,
+    )
 
 
 def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) -> Log:
