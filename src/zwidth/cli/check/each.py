@@ -7,6 +7,7 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from io import StringIO
 from math import inf, isfinite
@@ -30,7 +31,6 @@ from zwidth.writing import csv_cell, csv_text, writing_whole
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table as Given
-    from zwidth.passivity.verdict import Verdict
 
 
 _STATUS = ("active", "undecided", "passive in contact", "passive")
@@ -74,20 +74,14 @@ def run(arguments: argparse.Namespace) -> int:
         )
     verdicts = {name: check(loop.device, loop.environment, iterate=False) for name, loop in loops.items()}
     found = EachDevice(verdicts, measured)
-    _save(found, save)
+    if save is not None and save.suffix.lower() == ".json":
+        found.save(save)
+    elif save is not None:
+        with writing_whole(save) as file:
+            file.write(found.csv().encode())
     print_found(arguments.json, found.to_json, found.report, save)
     outcomes = {verdict.outcome for verdict in verdicts.values()}
     return exit_status(next(word for word in _STATUS if word in outcomes))
-
-
-def _save(found: EachDevice, save: Path | None) -> None:
-    if save is None:
-        return
-    if save.suffix.lower() == ".json":
-        found.save(save)
-    else:
-        with writing_whole(save) as file:
-            file.write(found.csv().encode())
 
 
 def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specification]:
@@ -106,20 +100,16 @@ def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specificati
             f"name two devices or more, got {len(devices)}; of one device zwidth check says more"
         )
     for tables in devices:
+        own: dict[str, Given] = dict(tables)
         if shared and "environment" in tables:
             raise InputError(
                 f"{tables['device'].label} has an environment, and so has {shared[0].label}: drop one"
             )
-        own: dict[str, Given] = {**tables, **({"environment": _copy(shared[0])} if shared else {})}
+        if shared:
+            own["environment"] = deepcopy(shared[0])
         if angles_in(list(typed.values())):
             keep_axis(own["device"], list(typed.values()))
         yield built(*merged(own, typed), in_range=True)
-
-
-def _copy(table: Given) -> Given:
-    from zwidth.model.specification.table import Table as Given
-
-    return Given(table.label, table.values)
 
 
 def _named(loops: Iterator[Specification]) -> dict[str, Specification]:
@@ -212,7 +202,7 @@ class EachDevice(Documented):
             return
         weakest = min(known, key=lambda name: known[name])
         if isfinite(known[weakest]):
-            most = self._in_words(known[weakest])
+            most = shown_at_most(known[weakest], GLOSSARY["stiffness"].unit_for(self.motion))
             yield f"passive on every one of them up to {most}, the limit of {weakest}"
 
     def _against_the_measured(self) -> Iterator[str]:
@@ -267,10 +257,6 @@ class EachDevice(Documented):
     def _told(self, stiffness: float | None) -> float | None:
         factor, _ = spoken(GLOSSARY["stiffness"].unit_for(self.motion))
         return None if stiffness is None else stiffness * factor
-
-    def _in_words(self, stiffness: float) -> str:
-        unit = GLOSSARY["stiffness"].unit_for(self.motion)
-        return shown_at_most(stiffness, unit)
 
 
 def _plain(number: float | None) -> str:
