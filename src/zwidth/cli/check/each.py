@@ -32,10 +32,8 @@ if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table as Given
 
-
 _STATUS = ("active", "undecided", "passive in contact", "passive")
 """The outcome of the worst device says the status."""
-
 
 USAGE = "SOURCE SOURCE ... [--PARAMETER VALUE ...] [--measured FILE] [--json] [-o FILE] [--force]"
 OPTIONS = (
@@ -153,7 +151,6 @@ class EachDevice(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """The verdict on each, with its name and what was measured."""
-
         key = f"measured_{unit_key('stiffness', self.motion)}"
         devices = [
             {
@@ -243,10 +240,8 @@ class EachDevice(Documented):
             more = [self._told(self.measured.get(name)), self._times(name)] if self.measured else []
             largest = self._told(self.largest(name))
             numbers = [None if largest is None else outward_decimal(largest, False), *more]
-            yield (
-                *self._first(name),
-                *("–" if n is None else "any" if n == inf else f"{n:.4g}" for n in numbers),
-            )
+            told = ("–" if n is None else "any" if n == inf else f"{n:.4g}" for n in numbers)
+            yield (*self._first(name), *told)
 
     def _first(self, name: str) -> tuple[str, str]:
         return name, self.verdicts[name].outcome
@@ -282,11 +277,10 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
         name, text = csv_cell(row[0]).strip(), row[1].strip()
         if not text:
             continue  # it did not shake, or nobody tried
-        bare = not any(map(str.isalpha, text))
+        if bracket and not any(map(str.isalpha, text)):
+            text += f" {bracket[1]}"
         try:
-            value = float(
-                parse_number(f"{text} {bracket[1]}" if bracket and bare else text, unit, "stiffness")
-            )
+            value = float(parse_number(text, unit, "stiffness"))
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
         if not 0 < value < inf:

@@ -85,15 +85,9 @@ def hand_bounds(law: FiniteLaw, losses: Losses, domain: Domain) -> HandBounds:
     outside: Fraction | None = None
     if law.surface == "none" or (law.relaxing is not None and law.surface == "position"):
         outside = -domain.lowest * step
-    max_depth = domain.highest + 1 if domain.max_depth is None else domain.max_depth
-    return HandBounds(
-        domain.speed * step / losses.period,
-        (domain.highest + 1) * step,
-        max_depth * step,
-        outside,
-        step,
-        losses.period,
-    )
+    deep, speed = domain.highest + 1, domain.speed * step / losses.period
+    max_depth = deep if domain.max_depth is None else domain.max_depth
+    return HandBounds(speed, deep * step, max_depth * step, outside, step, losses.period)
 
 
 # Slow hands: what covers every hand with more damping covers slow ones with more Coulomb friction.

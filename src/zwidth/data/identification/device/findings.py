@@ -45,12 +45,10 @@ def findings(
     yield from perhaps_none(estimates, ("damping", "coulomb_friction"))
     for name, what in _SEEN.items():
         if name in estimates:
-            until = (
-                f", gone at {told_quantity(found.moments.knee, 'friction_speed', found.motion, 3)}"
-                if name == "slow"
-                else ""
-            )
-            if name == "spring" and estimates[name].interval()[1] < 0:
+            until = ""
+            if name == "slow":
+                until = f", gone at {told_quantity(found.moments.knee, 'friction_speed', found.motion, 3)}"
+            elif name == "spring" and estimates[name].interval()[1] < 0:
                 until = (
                     "; below 0: gravity on a handle above its axis, or a hand whose force is not in the log"
                 )

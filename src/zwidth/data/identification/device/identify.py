@@ -176,14 +176,8 @@ def identify(
     if known is not None and log.motion == "linear":
         question_unit(mass, known, "mass", "kg")
     late = float(parse_number(delay, "s", "delay"))
-    return identify_log(
-        log,
-        mass=None if known is None else float(known),
-        delay=late,
-        zero=zero,
-        model=model,
-        progress=progress,
-    )
+    weighed = None if known is None else float(known)
+    return identify_log(log, mass=weighed, delay=late, zero=zero, model=model, progress=progress)
 
 
 def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) -> Log:
