@@ -47,6 +47,13 @@ def test_each_has_the_verdict_of_check(run):
     run(f"{KITS} --stiffness 40")
 
 
+def test_a_pattern_is_the_files_that_match(run, refused):
+    """A class on Windows, whose shells leave it as it is; the value of an option stays."""
+    assert run("each --json 'kit-?.toml' --stiffness 10").json == run(f"{KITS} --stiffness 10 --json").json
+    assert "class*.csv cannot be read" in refused("each 'kit-*.toml' --stiffness 10 --measured 'class*.csv'")
+    assert "there is no file" in refused("each 'kat-*.toml' --stiffness 10")
+
+
 def test_what_was_measured_stands_beside_it(run):
     """In units of the head or its own; what shook below the proof is named, the unmeasured has none."""
     out = run(f"{KITS} --stiffness 100 --measured class.csv -o table.csv", 1).words
@@ -97,6 +104,7 @@ def test_bad_input(refused, typed, said):
         ("kit-1,-4", "is > 0"),
         ("kit-1,3 kg", "stiffness is in"),
         ("kit-1,4\nkit-1,5", "stands there twice"),
+        ("kit-1,4.1.2", "stiffness is in"),
     ],
 )
 def test_bad_tables(refused, line, said):
@@ -104,6 +112,17 @@ def test_bad_tables(refused, line, said):
     err = refused("each kit-1.toml kit-2.toml --stiffness 9 --measured bad.csv")
     assert said in err
     assert "bad.csv" in err
+
+
+def test_a_table_as_a_spreadsheet_saves_it(run, refused):
+    """Decimal commas between semicolons; where nobody measured an empty cell; an empty file says so."""
+    Path("class.csv").write_text("device;stiffness [N/m]\r\nkit-1;410,5\r\nkit-2;\r\n", encoding="utf-8-sig")
+    found = run("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv --json").json["devices"]
+    assert [device.get("measured_stiffness_N_per_m") for device in found] == [410.5, None]
+    Path("class.csv").write_text("device;stiffness\nkit-1;1,018\n", encoding="utf-8")
+    assert "without a comma" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
+    Path("class.csv").write_text("\n", encoding="utf-8")
+    assert "is empty" in refused("each kit-1.toml kit-2.toml --stiffness 9 --measured class.csv")
 
 
 def test_an_encoder_on_the_motor(run, refused):

@@ -119,3 +119,9 @@ def test_a_changed_certificate_is_noticed(run):
     certificate.write_text(text.replace("150", "950"), encoding="utf-8")
     assert certificate.read_text(encoding="utf-8") != text
     run(f"verify {certificate}", 1)
+
+
+def test_an_interval_that_a_loop_cannot_run_with_is_told_with_its_unit(refused):
+    """Mass, damping, Coulomb friction and delay may stay intervals; the encoder of a board is one."""
+    given = "--damping 0.15 --coulomb-friction 0.1 --rate '1 kHz' --resolution '12 .. 13 um' --stiffness 100"
+    assert "resolution is the interval 12 … 13 µm" in refused(f"emit {given} --travel '-60 .. 60 mm' -o wall")

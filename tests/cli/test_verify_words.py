@@ -224,3 +224,9 @@ def test_a_document_about_a_wheel_is_told_in_degrees_too(run, refused):
     assert f"0.02 N·m·s/rad = {0.02 * math.pi / 180:.6g} N·m·s/deg" in told
     assert [line.partition(" = ")[0] for line in told.splitlines()] == plainly.splitlines()
     assert "deg, turn, rad, rpm" in refused("verify wheel.json --angles degrees")
+
+
+def test_a_folder_is_no_document(refused):
+    """Where `zwidth emit` wrote one, the certificate in it is meant."""
+    Path("my-wall").mkdir()
+    assert "my-wall: Is a directory; name the file in it" in refused("verify my-wall")

@@ -10,7 +10,9 @@ import argparse
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from glob import glob
+from itertools import pairwise
 from typing import NoReturn
 
 from zwidth import __version__
@@ -83,7 +85,8 @@ def _run(argv: list[str]) -> int:
     parser = _parser(argv)
     try:
         with quiet_pipe():
-            arguments, unknown = parser.parse_known_args(joined(argv))
+            typed = list(_with_files(argv, parser.get_default(_CHILD)))
+            arguments, unknown = parser.parse_known_args(joined(typed))
     except SystemExit:  # --help and --version end so
         return 0
     if unknown:
@@ -93,6 +96,14 @@ def _run(argv: list[str]) -> int:
             print(WELCOME)
         return 0
     return run(arguments.command, arguments)
+
+
+def _with_files(argv: Sequence[str], child: Parser | None) -> Iterator[str]:
+    """The files that there are in the place of a pattern, kit-*.toml: no shell of Windows does it."""
+    valued = {o for a in child._actions if a.nargs != 0 for o in a.option_strings} if child else set()
+    for before, word in pairwise(("", *argv)):
+        is_pattern = set("*?") & set(word) and not word.startswith("-") and before not in valued
+        yield from (is_pattern and sorted(glob(word))) or [word]
 
 
 def _parser(argv: Sequence[str]) -> Parser:

@@ -372,13 +372,16 @@ def _points(given: int, samples: int) -> int:
     return int(points)
 
 
+_MASS = {"linear": 'mass [kg], --mass "36 g"', "rotary": 'inertia [kg*m^2], --inertia "60 g*cm^2"'}
+
+
 def _mass(device: Device, operator: Operator) -> float:
     if device.mass is None:
         if operator.kinematic:
             return 0.0
         raise InputError(
             "mass is needed to simulate a motion and the device has none: the criteria do not depend on it, "
-            "what a hand feels does; give mass [kg], or prescribe the motion"
+            f"what a hand feels does; give {_MASS[device.motion]}"
         )
     return float(device.exact("mass"))
 

@@ -183,6 +183,27 @@ def test_free_decay_with_a_known_mass():
         assert found.estimates[name].value == pytest.approx(TRUE[name], rel=0.01)
     with pytest.raises(InputError, match="give the mass"):
         identify(log)
+    apart = np.concatenate([0.7 * k + np.arange(500) * 1e-3 for k in range(60)])
+    cut = Log.from_arrays(time=apart, position=position, resolution=22.4e-6)
+    with pytest.raises(InputError, match="zero of the force is fitted too"):
+        identify(cut, mass=0.036)
+    again = identify(cut, mass=0.036, zero="exact").estimates["damping"]
+    assert again.value == pytest.approx(TRUE["damping"], rel=0.01)
+
+
+def test_a_hand_whose_force_is_not_logged_is_asked_for(recording):
+    """Where a motor's spring pushes and nothing yields, the device would have a spring below 0."""
+    log = Log.from_arrays(
+        time=recording.time,
+        position=recording.position,
+        actuator_force=100 * recording.position,
+        resolution=22.4e-6,
+    )
+    found = identify(log, mass=0.036)
+    assert found.estimates["spring"].value < 0
+    assert "a hand whose force is not in the log" in next(
+        f.text for f in found.findings if f.kind == "spring"
+    )
 
 
 @settings(max_examples=8)
@@ -200,6 +221,7 @@ def test_units_do_not_matter(recording, found, length, force):
     ("options", "samples", "words"),
     [
         ({"mass": -1.0}, 60_000, "mass must be > 0"),
+        ({"mass": 36}, 60_000, 'write "36 g", or "36 kg"'),
         ({"delay": -1e-3}, 60_000, "delay must be ≥ 0"),
         ({"zero": "free"}, 60_000, "zero is"),
         ({"model": "stick"}, 60_000, 'model is "Coulomb and viscous" or "viscous"'),

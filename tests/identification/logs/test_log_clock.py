@@ -160,6 +160,15 @@ def test_a_stated_rate_is_held_against_the_stamps(recording):
         stated(1.05)
 
 
+def test_of_a_log_with_most_cut_out_the_stated_rate_is_the_clock():
+    """Two tenths of each second, where nobody holds the handle: as far as the stamps say that is no clock."""
+    time = (np.arange(40)[:, None] + 1e-3 * np.arange(200)).ravel()
+    with pytest.raises(zw.InputError, match="where most was cut out, state it"):
+        zw.Log.from_arrays(time=time, position=drift(time.size))
+    log = zw.Log.from_arrays(time=time, position=drift(time.size), sample_rate="1 kHz")
+    assert (log.sample_period, log.runs, log.samples) == (1e-3, 40, 8000)
+
+
 def test_without_time_the_rate_is_needed_and_is_the_clock(recording):
     """A row has no other clock than its number."""
     log = zw.Log.from_arrays(position=recording.position, sample_period="0.5 ms")

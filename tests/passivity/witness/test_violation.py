@@ -283,6 +283,22 @@ def test_a_clear_violation_is_shown_by_a_short_motion(name, delay):
     assert min(x[1:-1]) > 0
 
 
+def test_how_deep_and_fast_a_motion_is_counts_what_it_does_between_samples():
+    """A force that comes 0.25 ms after its sample is turned against there: both are of that too."""
+    late = zw.Device(damping="0.15", coulomb_friction="0.1", resolution="13.1 um", rate=1000, delay="0.25 ms")
+    verdict = zw.check(late, zw.Wall(600_000))
+    told = verdict.witness.to_dict()
+    turns = [float(x) for x in told["switch_positions_m"]]
+    x = [float(x) for x in told["positions_m"]]
+    assert verdict.witness.depth == max(turns) > 100 * max(x)
+    path = [x[0], *(place for pair in zip(turns, x[1:], strict=True) for place in pair)]
+    speeds = [
+        abs(b - a) / t for (a, b), t in zip(pairwise(path), [0.25e-3, 0.75e-3] * len(turns), strict=True)
+    ]
+    assert verdict.witness.peak_speed == pytest.approx(max(speeds), rel=1e-12)
+    assert "although it is more than any hand does" in verdict.claim
+
+
 @pytest.mark.parametrize("delay", ["0", "0.0003", "0.001", "0.004"])
 @pytest.mark.parametrize("law", [zw.Wall(2000), zw.Wall(2000, "0.2")])
 def test_a_motion_within_the_force_limit_where_there_is_one(delay, law):

@@ -7,6 +7,7 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from io import StringIO
 from math import inf, isfinite
@@ -30,12 +31,9 @@ from zwidth.writing import csv_cell, csv_text, writing_whole
 if TYPE_CHECKING:
     from zwidth.model.specification.read import Specification
     from zwidth.model.specification.table import Table as Given
-    from zwidth.passivity.verdict import Verdict
-
 
 _STATUS = ("active", "undecided", "passive in contact", "passive")
 """The outcome of the worst device says the status."""
-
 
 USAGE = "SOURCE SOURCE ... [--PARAMETER VALUE ...] [--measured FILE] [--json] [-o FILE] [--force]"
 OPTIONS = (
@@ -74,20 +72,14 @@ def run(arguments: argparse.Namespace) -> int:
         )
     verdicts = {name: check(loop.device, loop.environment, iterate=False) for name, loop in loops.items()}
     found = EachDevice(verdicts, measured)
-    _save(found, save)
+    if save is not None and save.suffix.lower() == ".json":
+        found.save(save)
+    elif save is not None:
+        with writing_whole(save) as file:
+            file.write(found.csv().encode())
     print_found(arguments.json, found.to_json, found.report, save)
     outcomes = {verdict.outcome for verdict in verdicts.values()}
     return exit_status(next(word for word in _STATUS if word in outcomes))
-
-
-def _save(found: EachDevice, save: Path | None) -> None:
-    if save is None:
-        return
-    if save.suffix.lower() == ".json":
-        found.save(save)
-    else:
-        with writing_whole(save) as file:
-            file.write(found.csv().encode())
 
 
 def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specification]:
@@ -106,20 +98,16 @@ def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specificati
             f"name two devices or more, got {len(devices)}; of one device zwidth check says more"
         )
     for tables in devices:
+        own: dict[str, Given] = dict(tables)
         if shared and "environment" in tables:
             raise InputError(
                 f"{tables['device'].label} has an environment, and so has {shared[0].label}: drop one"
             )
-        own: dict[str, Given] = {**tables, **({"environment": _copy(shared[0])} if shared else {})}
+        if shared:
+            own["environment"] = deepcopy(shared[0])
         if angles_in(list(typed.values())):
             keep_axis(own["device"], list(typed.values()))
         yield built(*merged(own, typed), in_range=True)
-
-
-def _copy(table: Given) -> Given:
-    from zwidth.model.specification.table import Table as Given
-
-    return Given(table.label, table.values)
 
 
 def _named(loops: Iterator[Specification]) -> dict[str, Specification]:
@@ -136,6 +124,7 @@ LARGEST_FILE = 1 << 20
 """Bytes of a table of what was measured."""
 
 _UNIT = re.compile(r"\[([^]]*)\]")
+_COMMA = re.compile(r"(?<=\d),(?=\d)(?!\d{3}\b)")
 
 
 @dataclass(frozen=True, repr=False)
@@ -162,7 +151,6 @@ class EachDevice(Documented):
 
     def to_dict(self) -> dict[str, Any]:
         """The verdict on each, with its name and what was measured."""
-
         key = f"measured_{unit_key('stiffness', self.motion)}"
         devices = [
             {
@@ -211,7 +199,7 @@ class EachDevice(Documented):
             return
         weakest = min(known, key=lambda name: known[name])
         if isfinite(known[weakest]):
-            most = self._in_words(known[weakest])
+            most = shown_at_most(known[weakest], GLOSSARY["stiffness"].unit_for(self.motion))
             yield f"passive on every one of them up to {most}, the limit of {weakest}"
 
     def _against_the_measured(self) -> Iterator[str]:
@@ -252,10 +240,8 @@ class EachDevice(Documented):
             more = [self._told(self.measured.get(name)), self._times(name)] if self.measured else []
             largest = self._told(self.largest(name))
             numbers = [None if largest is None else outward_decimal(largest, False), *more]
-            yield (
-                *self._first(name),
-                *("–" if n is None else "any" if n == inf else f"{n:.4g}" for n in numbers),
-            )
+            told = ("–" if n is None else "any" if n == inf else f"{n:.4g}" for n in numbers)
+            yield (*self._first(name), *told)
 
     def _first(self, name: str) -> tuple[str, str]:
         return name, self.verdicts[name].outcome
@@ -266,10 +252,6 @@ class EachDevice(Documented):
     def _told(self, stiffness: float | None) -> float | None:
         factor, _ = spoken(GLOSSARY["stiffness"].unit_for(self.motion))
         return None if stiffness is None else stiffness * factor
-
-    def _in_words(self, stiffness: float) -> str:
-        unit = GLOSSARY["stiffness"].unit_for(self.motion)
-        return shown_at_most(stiffness, unit)
 
 
 def _plain(number: float | None) -> str:
@@ -282,7 +264,7 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
     A line for each device, its name and the stiffness, with a unit or in that of the head: "stiffness [N/m]".
     """
     rows, unit = _lines(path), GLOSSARY["stiffness"].unit_for(motion)
-    bracket = _UNIT.search(" ".join(rows[0][1:2])) if rows else None
+    bracket = _UNIT.search(" ".join(rows[0][1:2]))
     found: dict[str, float] = {}
     for number, row in enumerate(rows, 1):
         if number == 1 and len(row) > 1 and not any(map(str.isdigit, row[1])):
@@ -293,11 +275,12 @@ def read_measured(path: Path, motion: str) -> dict[str, float]:
                 f'{where}: a device and a stiffness, such as "kit-1, 240 N/m"; got {quoted(",".join(row))}'
             )
         name, text = csv_cell(row[0]).strip(), row[1].strip()
-        bare = not any(map(str.isalpha, text))
+        if not text:
+            continue  # it did not shake, or nobody tried
+        if bracket and not any(map(str.isalpha, text)):
+            text += f" {bracket[1]}"
         try:
-            value = float(
-                parse_number(f"{text} {bracket[1]}" if bracket and bare else text, unit, "stiffness")
-            )
+            value = float(parse_number(text, unit, "stiffness"))
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
         if not 0 < value < inf:
@@ -319,6 +302,9 @@ def _lines(path: Path) -> list[list[str]]:
     if len(text.encode()) > LARGEST_FILE:
         raise InputError(f"{plain(str(path), 100)} is larger than a megabyte, and no table of a class is")
     separator = ";" if ";" in text.partition("\n")[0] else ","
-    return [
-        row for row in csv.reader(StringIO(text), delimiter=separator) if any(cell.strip() for cell in row)
-    ]
+    rows = [row for row in csv.reader(StringIO(text), delimiter=separator) if any(map(str.strip, row))]
+    if separator == ";":  # a spreadsheet that writes decimal commas; 1,018 may be a thousand
+        rows = [[row[0], *(_COMMA.sub(".", cell) for cell in row[1:])] for row in rows]
+    if not rows:
+        raise InputError(f"{plain(str(path), 100)} is empty; a line is, for example, kit-1, 240 N/m")
+    return rows

@@ -73,7 +73,8 @@ def judged(path: str) -> Judged:
         return judge_file(path)
     except Unreadable as error:
         missing = did_you_mean(Path(path)) if not Path(path).exists() else ""
-        raise InputError(f"{path}: {error}{missing}") from None
+        inside = "; name the file in it" if Path(path).is_dir() else ""
+        raise InputError(f"{path}: {error}{missing}{inside}") from None
 
 
 def _with_laws(found: Judged) -> tuple[Judged, dict[str, str]]:
@@ -128,10 +129,9 @@ def _in_other_words(row: Row) -> str:
 
 def _joules(energy: Fraction) -> str:
     """Also where a double would overflow: the checker's numbers have no bound but their digits."""
-    value = float(Decimal(energy.numerator) / Decimal(energy.denominator))
-    if value and abs(value) < float("inf"):
-        return shown(value, "J", 6)
-    return f"{Decimal(energy.numerator) / Decimal(energy.denominator):.6g} J"
+    exact = Decimal(energy.numerator) / Decimal(energy.denominator)
+    fits = float(exact) and abs(float(exact)) < float("inf")
+    return shown(float(exact), "J", 6) if fits else f"{exact:.6g} J"
 
 
 def schema(kind: str) -> str:

@@ -52,7 +52,8 @@ def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     if typed["force_noise"] is None:
         raise InputError(
             f'the noise of the force is needed: --force-noise "{_NOISE[motion]}", the standard deviation of '
-            "the load cell at rest"
+            "the load cell at rest; without one no run is planned: push the handle and let go, some sixty "
+            "times, for zwidth identify with --mass"
         )
     if motion == "rotary" and typed["length"] is None:
         raise InputError('the length of a stroke is needed: --length "90 deg", as far as the device turns')

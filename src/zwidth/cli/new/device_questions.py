@@ -10,7 +10,7 @@ from zwidth.cli.new.questions import Question, Row, need_unit, understood
 from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.model.device.rotary import ROTARY, rotary
-from zwidth.model.specification.read import question_time
+from zwidth.model.specification.read import question_unit
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.units import parse, parse_number
@@ -73,7 +73,7 @@ def _check(key: str, motion: str) -> Callable[[str], str]:
             answer, own.quantity, key, uncertain=True, bound=own.bound, why=own.why, motion=motion
         )
         if key == "delay":
-            question_time(answer, number, key)
+            question_unit(answer, number, key)
         return number
 
     return check

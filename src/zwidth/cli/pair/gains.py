@@ -10,7 +10,7 @@ from zwidth.cli.decision import exit_status
 from zwidth.cli.options import FORCE, IN_FULL, look_for
 from zwidth.cli.output import give_out, print_found, printed, targets
 from zwidth.errors import InputError
-from zwidth.model.specification.read import question_time
+from zwidth.model.specification.read import question_unit
 from zwidth.quantity.text import save_json, to_json
 from zwidth.quantity.units import parse_number
 
@@ -196,5 +196,5 @@ def _delay(arguments: argparse.Namespace) -> tuple[str, str] | None:
         raise InputError("--link-delay-back is of one way alone; give --link-delay, of the other, too")
     for option, value in (("--link-delay", there), ("--link-delay-back", back)):
         if value is not None:
-            question_time(value, parse_number(value, "s", option), option)
+            question_unit(value, parse_number(value, "s", option), option)
     return None if there is None else (there, there if back is None else back)

@@ -267,7 +267,7 @@ def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, 
             f"{table.source} holds fewer than two rows with numbers in all of {listed(list(names))}; what "
             "stands in other rows than the position is looked for at most half a period away, by a time"
         )
-    clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
+    clock = clock_of(start.time, table.source, stated) if timed else Clock(period=stated or 0.0, group=1)
     cutter = Cutter(clock, table.source, tally)
     survey = Survey(clock.period, meaning.resolution, meaning.factors["position"], table.source)
     survey.look(cutter.segments(chain([start], rows)))

@@ -157,6 +157,8 @@ _WIDEST = 4096
 
 GAP, REPEATED, BACK = 1, 2, 3
 
+OF_PARTS = '; where most was cut out, state it: sample_rate=1000, --rate "1 kHz"'
+
 
 @dataclass(frozen=True, kw_only=True)
 class Clock:
@@ -173,8 +175,9 @@ class Clock:
         return _NOISY_SIDE if self.noisy else _SIDE
 
 
-def clock_of(time: Array, source: str) -> Clock:
-    """The period that most of the intervals between stamps have, or have on average."""
+def clock_of(time: Array, source: str, stated: float | None = None) -> Clock:
+    """The period [s] that most of the intervals between stamps have, or have on average; where that is the
+    stated one, most of the log may have been cut out."""
     steps = np.diff(time)
     if steps.size == 0 or not (steps > 0).any():
         raise InputError(
@@ -183,7 +186,8 @@ def clock_of(time: Array, source: str) -> Clock:
     usual = float(np.median(steps))
     width = max(1, min(steps.size // 2, _WIDEST))
     period = float(np.median(time[width:] - time[:-width])) / width
-    single = period < 2.5 * usual and np.mean(np.abs(steps) < 0.25 * usual) <= _REPEATS
+    is_stated = stated is not None and abs(usual - stated) < 0.25 * stated
+    single = (period < 2.5 * usual or is_stated) and np.mean(np.abs(steps) < 0.25 * usual) <= _REPEATS
     if usual > 0 and single and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
         low, high = np.quantile(steps, (0.25, 0.75))
         return Clock(period=usual, group=1, noisy=bool(high - low > 0.1 * usual))
@@ -191,7 +195,7 @@ def clock_of(time: Array, source: str) -> Clock:
     if period <= 0 or group > width // 4 or _wanders(time, period, width):
         raise InputError(
             f"{source}: the stamps have no common period, they are "
-            f"{from_to(steps.min(), steps.max(), 's', 3)} apart; a log needs samples at a fixed rate"
+            f"{from_to(steps.min(), steps.max(), 's', 3)} apart; a log needs one fixed rate{OF_PARTS}"
         )
     return Clock(period=period, group=group)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.runs import Cutter, Segment, settled
+from zwidth.data.logs.runs import OF_PARTS, Cutter, Segment, settled
 from zwidth.data.logs.sensors import FEWEST, Grid, Jumps, Stops, at_ends, grid_of, offset_on, on_grid
 from zwidth.data.logs.table import Finding
 from zwidth.errors import InputError
@@ -143,7 +143,7 @@ def _refuse_other_rate(time: Array, period: float, source: str) -> None:
     if other.size:
         raise InputError(
             f"{source}: at t = {shown(time[other[0] * _LONG], 's', 6)} the sample period changes from "
-            f"{shown(period, 's', 6)} to {shown(means[other[0]], 's', 6)}; cut the file there"
+            f"{shown(period, 's', 6)} to {shown(means[other[0]], 's', 6)}; cut the file there{OF_PARTS}"
         )
 
 

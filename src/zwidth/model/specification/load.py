@@ -31,7 +31,7 @@ from zwidth.model.specification.read import (
     WITH_LAWS,
     build_device,
     keep_axis,
-    question_time,
+    question_unit,
     read_tables,
     specified_device,
 )
@@ -154,7 +154,7 @@ def _read(table: Table, key: str, motion: str) -> Any:
             return read(value, key, own, motion)
         number = read_number(value, own.quantity, key, bound=own.bound, why=own.why, motion=motion)
         if key in _LINKS:
-            question_time(value, number, key)
+            question_unit(value, number, key)
         return number
 
 

@@ -37,8 +37,8 @@ from zwidth.quantity.units import parse
 
 T = TypeVar("T")
 
-_LONG_DELAY = Fraction(1, 2)
-"""Without a unit, a delay this long is questioned [s]."""
+_HARDLY = {"s": (Fraction(1, 2), "ms"), "kg": (Fraction(5), "g")}
+"""Without a unit, so long a delay and so large a mass are questioned; what is meant most often."""
 
 LARGEST_FILE = 1 << 20
 """Bytes; a specification is a page of text."""
@@ -174,7 +174,7 @@ def _device_value(table: Table, key: str, motion: str) -> Any:
     with located(table.where(key)):
         value = parse(table.values[key], unit, key)
         if key == "delay":
-            question_time(table.values[key], value, key)
+            question_unit(table.values[key], value, key)
         return value
 
 
@@ -192,14 +192,14 @@ def _arguments(table: Table, motion: str) -> dict[str, Any]:
     return {**own, "transmission": transmission_of(between, motion)} if given else own
 
 
-def question_time(written: object, delay: Exact | Interval, name: str) -> None:
-    """Ask for the unit of a delay that is hardly meant in seconds."""
-    bare = not (isinstance(written, str) and any(map(str.isalpha, written)))
-    if bare and ends(delay)[1] >= _LONG_DELAY:
-        seconds = f"{float(ends(delay)[1]):g}"
+def question_unit(written: object, number: Exact | Interval, name: str, unit: str = "s") -> None:
+    """Ask for the unit of a time or a mass that is hardly meant in seconds or kilograms."""
+    (least, usual), most = _HARDLY[unit], ends(number)[1]
+    if most >= least and not (isinstance(written, str) and any(map(str.isalpha, written))):
+        bare = f"{float(most):g}"
         raise InputError(
-            f"{name} {seconds} without a unit is {seconds} s{_BETWEEN.get(name, '')}; write "
-            f'"{seconds} ms", or "{seconds} s" if that is meant'
+            f"{name} {bare} without a unit is {bare} {unit}{_BETWEEN.get(name, '')}; write "
+            f'"{bare} {usual}", or "{bare} {unit}" if that is meant'
         )
 
 

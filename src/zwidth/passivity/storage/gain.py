@@ -14,7 +14,7 @@ from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import unit_key
 from zwidth.passivity.storage.domain import Losses
 from zwidth.passivity.storage.grid import Grid
-from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds, max_mean_speed
+from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.storage_function import loop_document
 from zwidth.passivity.storage.value_iteration import ValueIteration
@@ -84,7 +84,7 @@ class Gain(Evidence):
     @cached_property
     def peak_speed(self) -> float:
         """Largest mean speed of the whole motion, over each time in which one force is held [m/s; rad/s]."""
-        return float(max_mean_speed(self.motion, self.losses.period, self.losses.part))
+        return float(self.motion.peak_speed(self.losses.period, self.losses.part))
 
     @cached_property
     def depth(self) -> float:
@@ -216,16 +216,9 @@ def motion_document(
 def _witness(
     grid: Grid, document: dict[str, Any], motion: Motion, energy: Fraction, per_round: Fraction, kind: str
 ) -> Gain:
-    part = motion.repeats[0]._replace(times=int(document["repeats"]["times"]))
-    return Gain(
-        {**document, "energy_J": energy},
-        motion.repeated(part.times),
-        energy,
-        per_round,
-        grid.law,
-        grid.encoder,
-        "rad" if kind == "rotary" else "m",
-    )
+    told, unit = {**document, "energy_J": energy}, "rad" if kind == "rotary" else "m"
+    whole = motion.repeated(int(document["repeats"]["times"]))
+    return Gain(told, whole, energy, per_round, grid.law, grid.encoder, unit)
 
 
 # Where the hand is best at the instant within a sample at which the force changes.
@@ -261,8 +254,7 @@ def switch_positions(grid: Grid, x: list[Fraction], part: Repeat) -> tuple[Fract
 def _allowed(grid: Grid, start: Fraction, end: Fraction) -> tuple[Fraction, Fraction]:
     """Between which positions the hand keeps to its bounds."""
     losses, domain = grid.losses, grid.domain
-    max_speed = domain.speed
-    early, late = (max_speed * losses.resolution * part for part in (losses.part, 1 - losses.part))
+    early, late = (domain.speed * losses.resolution * part for part in (losses.part, 1 - losses.part))
     max_depth = (domain.highest + 1 if domain.max_depth is None else domain.max_depth) * losses.resolution
     low, high = max(start - early, end - late), min(start + early, end + late, max_depth)
     if grid.law.surface == "none":
@@ -288,12 +280,9 @@ def _best(
             candidates.append(round(m / losses.resolution * _GRID) * losses.resolution / _GRID)
 
     def taken(m: Fraction) -> Fraction:
-        out = Fraction(0)
-        for (a, b), force, span in zip(
-            pairwise((start, m, end)), (older, newer), (part, 1 - part), strict=True
-        ):
-            out -= force * (b - a) + losses.lost(b - a, span)
-        return out
+        before, after = m - start, end - m
+        paid = losses.lost(before, part) + losses.lost(after, 1 - part)
+        return -older * before - newer * after - paid
 
     return max((min(max(m, low), high) for m in candidates), key=taken)
 
@@ -332,14 +321,8 @@ def settled_round(gain: Gain) -> Round:
         -f * float(b - a) - float(losses.lost(b - a, t1 - t0))
         for f, (a, b), (t0, t1) in zip(forces, pairwise(positions), pairwise(times), strict=True)
     )
-    energies = tuple(accumulate(out, initial=0.0))
-    return Round(
-        tuple(map(float, times)),
-        tuple(map(float, positions)),
-        tuple(forces),
-        energies,
-        float(losses.resolution),
-    )
+    path = tuple(map(float, times)), tuple(map(float, positions))
+    return Round(*path, tuple(forces), tuple(accumulate(out, initial=0.0)), float(losses.resolution))
 
 
 def peak_force(gain: Gain) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 from zwidth.errors import InputError
@@ -16,7 +15,6 @@ from zwidth.passivity.linear.contact import DampedWall, enough_damping
 from zwidth.passivity.scope import Hands, unit_key
 from zwidth.passivity.storage.domain import Domain, Losses
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.witness.motion import Motion
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import exact_text
 from zwidth.quantity.units import parse_number
@@ -87,25 +85,9 @@ def hand_bounds(law: FiniteLaw, losses: Losses, domain: Domain) -> HandBounds:
     outside: Fraction | None = None
     if law.surface == "none" or (law.relaxing is not None and law.surface == "position"):
         outside = -domain.lowest * step
-    max_depth = domain.highest + 1 if domain.max_depth is None else domain.max_depth
-    return HandBounds(
-        domain.speed * step / losses.period,
-        (domain.highest + 1) * step,
-        max_depth * step,
-        outside,
-        step,
-        losses.period,
-    )
-
-
-def max_mean_speed(motion: Motion, period: Fraction, part: Fraction) -> Fraction:
-    """Largest mean speed over each time in which one force is held [m/s; rad/s]."""
-    x, switches = motion.positions, motion.switch_positions
-    if not switches:
-        return max(abs(b - a) for a, b in pairwise(x)) / period
-    early = max(abs(m - a) for a, m in zip(x[:-1], switches, strict=True)) / part
-    late = max(abs(b - m) for b, m in zip(x[1:], switches, strict=True)) / (1 - part)
-    return max(early, late) / period
+    deep, speed = domain.highest + 1, domain.speed * step / losses.period
+    max_depth = deep if domain.max_depth is None else domain.max_depth
+    return HandBounds(speed, deep * step, max_depth * step, outside, step, losses.period)
 
 
 # Slow hands: what covers every hand with more damping covers slow ones with more Coulomb friction.

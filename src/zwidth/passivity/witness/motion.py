@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
+from itertools import pairwise
 from math import ceil, floor, log10
 from typing import Any, NamedTuple
 
@@ -81,14 +82,31 @@ class Motion:
 
     @property
     def depth(self) -> Fraction:
-        """The deepest position of the whole motion."""
-        ahead, deepest, after = Fraction(0), max(self.positions), 0
+        """The deepest position at a sample of the whole motion."""
+        return self._deepest(self.positions)
+
+    @property
+    def reach(self) -> Fraction:
+        """The deepest position of the whole motion, between its samples too."""
+        later = self.switch_positions or self.positions[1:]
+        return self._deepest((self.positions[0], *map(max, self.positions[1:], later)))
+
+    def peak_speed(self, period: Fraction, part: Fraction) -> Fraction:
+        """Largest mean speed over each time in which one force is held, by `part` of a sample late."""
+        x, switches = self.positions, self.switch_positions
+        if not switches:
+            return max(abs(b - a) for a, b in pairwise(x)) / period
+        early = max(abs(m - a) for a, m in zip(x[:-1], switches, strict=True)) / part
+        late = max(abs(b - m) for b, m in zip(x[1:], switches, strict=True)) / (1 - part)
+        return max(early, late) / period
+
+    def _deepest(self, places: tuple[Fraction, ...]) -> Fraction:
+        ahead, deepest, after = Fraction(0), max(places), 0
         for part in self.repeats:
-            advance = self.positions[part.last] - self.positions[part.first]
-            deepest = max(deepest, max(self.positions[after : part.last + 1]) + ahead)
-            ahead += (part.times - 1) * advance
+            deepest = max(deepest, max(places[after : part.last + 1]) + ahead)
+            ahead += (part.times - 1) * (self.positions[part.last] - self.positions[part.first])
             after = part.last
-        return max(deepest, max(self.positions[after:]) + ahead)
+        return max(deepest, max(places[after:]) + ahead)
 
 
 @dataclass(frozen=True)

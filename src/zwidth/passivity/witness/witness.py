@@ -137,20 +137,20 @@ class Witness(Evidence):
 
     @property
     def peak_speed(self) -> float:
-        """Largest mean speed over one sample [m/s; rad/s]."""
-        x = self.motion.positions
-        return float(max(abs(b - a) for a, b in zip(x, x[1:], strict=False)) / self.setting.loop.period)
+        """Largest mean speed over each time in which one force is held [m/s; rad/s]."""
+        loop = self.setting.loop
+        return float(self.motion.peak_speed(loop.period, loop.part_delay))
 
     @property
     def depth(self) -> float:
         """Deepest penetration [m; rad]."""
-        return float(self.motion.depth)
+        return float(self.motion.reach)
 
     @property
     def peak_force(self) -> float:
         """Largest actuator force that the motion asks for, to rounding [N; N·m]."""
         # a part that moves on with every round is listed once: its depth is what counts
-        static = abs(float(self.setting.loop.static_stiffness or 0)) * self.depth
+        static = abs(float(self.setting.loop.static_stiffness or 0) * float(self.motion.depth))
         return max(self.setting.peak_force(self._told.positions), static)
 
     def to_dict(self) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from zwidth.data.identification.device.estimate import Regression, regress
+from zwidth.data.identification.device.estimate import FEWEST, Regression, regress
 from zwidth.data.identification.device.moments import Moments, Piece, pieces
 from zwidth.data.identification.device.pulses import pulse
 from zwidth.data.logs import Log
@@ -73,7 +73,7 @@ def choose(log: Log, names: tuple[str, ...], mass: float | None, delay: float, z
     pilot = _Pilot(beginning, log.sample_period, knee, names, mass, delay, zero)
     piece = pilot.best_piece(0.0)
     if piece is None:
-        raise InputError(too_little(log))
+        raise InputError(too_little(log, zero))
     if not log.channels:
         return Choice(piece, 0.0, pilot.knee)
     late, longer = pilot.lateness(piece), pilot.lateness(LONGER * piece)
@@ -89,12 +89,18 @@ def shifts(fit: Regression, longer: Regression) -> Array:
     return SAFETY * change
 
 
-def too_little(log: Log) -> str:
+def too_little(log: Log, zero: Zero) -> str:
     """The message where nothing can be told."""
     pilot = list(_first(pieces(log)))
     strokes = sum(p.strokes.first.size for p in pilot)
     seconds = sum(p.position.size for p in pilot) * log.sample_period
     counted = f"{strokes} stroke{'' if strokes == 1 else 's'}"
+    if zero != "exact" and FEWEST < strokes < 2 * len(pilot):
+        return (
+            f"{log.source}: {counted} in {len(pilot)} runs, of each of which the zero of the force is fitted "
+            "too, and too little is left; where nothing but friction slows the handle (level, no spring) say "
+            "so, --zero exact or zero='exact', else record several strokes in a row"
+        )
     return (
         f"{log.source}: too little motion to tell mass, damping and friction apart: {counted} in "
         f"{shown(seconds, 's', 3)}, too few long ones, or all alike; move to and fro for a minute, over most "

@@ -45,11 +45,13 @@ def findings(
     yield from perhaps_none(estimates, ("damping", "coulomb_friction"))
     for name, what in _SEEN.items():
         if name in estimates:
-            until = (
-                f", gone at {told_quantity(found.moments.knee, 'friction_speed', found.motion, 3)}"
-                if name == "slow"
-                else ""
-            )
+            until = ""
+            if name == "slow":
+                until = f", gone at {told_quantity(found.moments.knee, 'friction_speed', found.motion, 3)}"
+            elif name == "spring" and estimates[name].interval()[1] < 0:
+                until = (
+                    "; below 0: gravity on a handle above its axis, or a hand whose force is not in the log"
+                )
             text = f"{what} is seen and fitted: {estimates[name]}{until}"
             yield Finding(kind=_KINDS.get(name, name.replace("_", " ")), text=text)
     yield from _bend(found, names, slopes, speed)

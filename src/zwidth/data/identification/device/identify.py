@@ -31,6 +31,7 @@ from zwidth.data.identification.device.two_masses import seen_to_swing, two_mass
 from zwidth.data.logs import Log, read_log
 from zwidth.errors import InputError
 from zwidth.lazy import above
+from zwidth.model.specification.read import question_unit
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Shown
@@ -66,12 +67,12 @@ def identify_log(
     estimates, fit = found.estimates(names), found.regression(names)
     viscous = found.regression(tuple(n for n in names if n not in ("coulomb_friction", "slow")))
     if estimates is None or fit is None or viscous is None:
-        raise InputError(too_little(log))
+        raise InputError(too_little(log, zero))
     seen = found.points.labelled(fit, mass, log.motion)
     quickest = fastest(seen)
     directions, slopes = found.directions(names), found.slopes(names, min(quickest))
     if directions is None or slopes is None or not min(quickest) > 0:
-        raise InputError(too_little(log))
+        raise InputError(too_little(log, zero))
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     shaken = model == "Coulomb and viscous" and mass is None and seen_to_swing(log, estimates, late)
     apart = two_masses(log, estimates, late) if shaken else None
@@ -171,9 +172,12 @@ def identify(
         If the recording cannot be read or shows too little: too few strokes, or no force and no mass.
     """
     log = log_from(recording, **reading)
-    known = None if mass is None else float(parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass"))
+    known = None if mass is None else parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass")
+    if known is not None and log.motion == "linear":
+        question_unit(mass, known, "mass", "kg")
     late = float(parse_number(delay, "s", "delay"))
-    return identify_log(log, mass=known, delay=late, zero=zero, model=model, progress=progress)
+    weighed = None if known is None else float(known)
+    return identify_log(log, mass=weighed, delay=late, zero=zero, model=model, progress=progress)
 
 
 def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) -> Log:
