@@ -54,8 +54,6 @@ def _asks_for_c() -> bool:
 
 def spelled(text: str) -> str:
     """The text as standard output will show it: what its encoding lacks is spelled out."""
-    if encodes(text):
-        return text
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, "zwidth").decode(encoding)
 
@@ -127,9 +125,9 @@ def message_lines(text: str) -> list[str]:
 
 
 def print_json(text: str) -> None:
-    """Print JSON; escaped is what a terminal would obey, and what the encoding lacks."""
+    """Print JSON, which is UTF-8: for any other encoding in ASCII; escaped is what a terminal would obey."""
     text = OBEYED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
-    if not encodes(text):
+    if codecs.lookup(getattr(sys.stdout, "encoding", None) or "utf-8").name != "utf-8":
         text = "".join(c if c.isascii() else json.dumps(c)[1:-1] for c in text)
     with quiet_pipe():
         print(text)
