@@ -23,7 +23,7 @@ from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import answers, known
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import at_most, in_words, shown, shown_at_least
+from zwidth.quantity.text import at_most, in_words, shown, shown_at_least, shown_at_most
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -253,11 +253,14 @@ class LinearVerdict(Verdict):
         unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
         rows = [("limit", self.limit)]
         if parameter_limits.has_stiffness(self.environment):
-            most = at_most(self.max_stiffness, unit["stiffness"])
-            rows.append(("largest passive stiffness", shown(most, unit["stiffness"], 6)))
+            rows.append(
+                ("largest passive stiffness", shown_at_most(self.max_stiffness, unit["stiffness"], 6))
+            )
         else:
             rows.append(("largest passive gain", shown(at_most(self.max_gain, "1"), "times this law", 6)))
-        rows.append(("required device damping", shown_at_least(self.required_damping, unit["damping"], 6)))
+        need = self.required_damping
+        enough = "no amount is proved enough" if need is None else shown_at_least(need, unit["damping"], 6)
+        rows.append(("required device damping", enough))
         rows.append(("critical frequency", shown(self.critical_frequency, "Hz", 6)))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
