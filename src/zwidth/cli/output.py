@@ -133,11 +133,6 @@ def print_json(text: str) -> None:
         print(text)
 
 
-def check_new(path: Path, force: bool) -> None:
-    """Refuse a path that cannot be written, or where a file would be lost."""
-    check_target(path, force, "--force")
-
-
 def target(option: str, given: str | None, suffixes: Sequence[str], force: bool) -> Path | None:
     """The file of an option, checked before anything is computed; None where none was asked for."""
     if given is None:
@@ -145,7 +140,7 @@ def target(option: str, given: str | None, suffixes: Sequence[str], force: bool)
     path = Path(given)
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option}: the file must end in {', '.join(suffixes)}, got {given!r}")
-    check_new(path, force)
+    check_target(path, force, "--force")
     return path
 
 
@@ -164,7 +159,7 @@ def targets(
             f"{option}: {document.name!r} is the name of a picture, and what is saved is none; "
             "for a picture give --plot"
         )
-    check_new(document, force)
+    check_target(document, force, "--force")
     return picture, document
 
 
