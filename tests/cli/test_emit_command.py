@@ -101,6 +101,8 @@ def test_where_the_files_go(run, refused):
     Path("file").write_text("mine", encoding="utf-8")
     assert "exists and is no directory" in refused(f"{PADDLE} -o file")
     assert "cannot be made" in refused(f"{PADDLE} -o file/below")
+    assert "give that of the directory" in refused(f"{PADDLE} -o law.h")
+    assert not Path("law.h").exists()
     run(f"{PADDLE} -o wall")
     Path("wall/law.h").write_text("mine", encoding="utf-8")
     assert "exists; choose another name, or give --force to" in refused(f"{PADDLE} -o wall")

@@ -16,6 +16,7 @@ import pytest
 import yaml
 
 import zwidth
+from zwidth.cli.main import main
 
 EXAMPLE = zwidth.samples.path("firmware/device.toml").parent
 WORKFLOW = yaml.safe_load((EXAMPLE / ".github/workflows/passivity.yml").read_text(encoding="utf-8"))
@@ -114,3 +115,23 @@ def test_what_is_not_proved_fails_the_build_too(tmp_path):
     in_contact = run_in(tmp_path)
     assert (in_contact.returncode, "::passive in contact. " in in_contact.stdout) == (1, True)
     assert run_in(tmp_path, ACCEPTED="0 4").returncode == 0
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="the line of the docs asks git")
+def test_emitted_files_in_a_repository_are_compared_with_their_law(tmp_path, monkeypatch):
+    """The line of docs/firmware.md: nothing differs until the gain does."""
+    shutil.copy(EXAMPLE / "device.toml", tmp_path)
+    shutil.copytree(EXAMPLE / "walls", tmp_path / "walls")
+    monkeypatch.chdir(tmp_path)
+
+    def differs() -> int:
+        assert main(["emit", "device.toml", "walls/bump-stop.toml", "-o", "bump-stop", "--force"]) == 0
+        return subprocess.run(["git", "diff", "--exit-code", "--", "bump-stop"], check=False).returncode
+
+    stop = tmp_path / "walls" / "bump-stop.toml"
+    main(["emit", "device.toml", "walls/bump-stop.toml", "-o", "bump-stop"])
+    subprocess.run(["git", "init", "-q"], check=True)
+    subprocess.run(["git", "add", "bump-stop"], check=True)
+    assert differs() == 0
+    stop.write_text(stop.read_text(encoding="utf-8").replace("15 N*m/rad", "14 N*m/rad"), encoding="utf-8")
+    assert differs() == 1

@@ -37,6 +37,7 @@ REFUSED = {
         "check": "no device",
         "devices phanton": "phantom",
         "devices phantom falcon": "too many",
+        "check haptic-paddle --stiffness 15 N/m": ("too many arguments: N/m", "in double quotes"),
         "verify": "FILE",
         "verify missing.json": "missing.json",
         "verify --schema sprong": ("no kind of document", 'did you mean "spring"?'),

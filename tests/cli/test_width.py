@@ -1,6 +1,7 @@
 """Lines and tables that fit: nothing is lost, nothing is wider than the page."""
 
 import io
+import json
 import sys
 
 import pytest
@@ -12,6 +13,7 @@ from zwidth.cli import output
 from zwidth.cli.output import (
     columns,
     fitted,
+    print_json,
     print_report,
     print_text,
     spelled,
@@ -19,6 +21,7 @@ from zwidth.cli.output import (
     width_of,
     wrapped,
 )
+from zwidth.quantity.text import to_json
 from zwidth.showing import Lines, Table
 
 words = st.text(st.sampled_from("ab·é力µ→ "), max_size=120)
@@ -103,6 +106,15 @@ def test_a_terminal_of_the_locale_c_has_ascii(monkeypatch, locale, encoding):
     assert max(map(width_of, lines)) <= 20
     assert ("->" in lines[0]) == (encoding == "ascii")
     assert spelled("≥") == (">=" if encoding == "ascii" else "≥")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252", "ascii"])
+def test_json_is_utf_8_whatever_the_pipe(monkeypatch, encoding):
+    """On Windows a file behind > has the code page, which a reader of JSON does not expect."""
+    shown = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(shown, encoding=encoding))
+    print_json(to_json({"claim": "20 N·m/rad, τ ≤ 1 ms"}))
+    assert json.loads(shown.getvalue().decode("utf-8")) == {"claim": "20 N·m/rad, τ ≤ 1 ms"}
 
 
 def test_a_pipe_of_the_locale_c_is_left_as_it_is(monkeypatch):

@@ -202,7 +202,8 @@ TWO_LAGS = control.tf([[[1], [0]], [[0], [1]]], [[[1, -0.5], [1]], [[1], [1, -0.
         (lambda: as_environment(SYSTEMS[0], "zoh"), "nothing to act on"),
         (lambda: as_environment(zw.Wall(3), "zoh"), "nothing to act on"),
         (lambda: as_environment(control.tf([1], [1, 2], None)), "dt=None"),
-        (lambda: as_environment(300), "an environment is"),
+        (lambda: as_environment(300), r"a spring is Wall\(stiffness"),
+        (lambda: as_environment(([1], [1, 2])), r"coefficients are PulseTransferFunction\("),
         (lambda: as_environment(None), "an environment is"),
     ],
 )

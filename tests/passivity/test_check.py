@@ -57,6 +57,19 @@ def test_paddle_at_its_limit():
     assert "equality included" in verdict.claim
 
 
+def test_a_law_at_the_edge_of_stability_is_said_to_be_beyond_damping():
+    """Integral action: the need has no bound at its pole; of a leak it has one."""
+    verdict = zw.check(PADDLE, zw.PulseTransferFunction([20, 10], [1, -1]))
+    assert verdict.outcome == "active"
+    assert verdict.required_damping is None
+    assert verdict.critical_frequency == 0
+    assert verdict.limit == "marginally stable environment, for which no damping is enough"
+    assert dict(verdict.rows())["required device damping"] == "no amount is proved enough"
+    bounded = zw.check(PADDLE, zw.PulseTransferFunction([20, 10], [1, "-0.99"]))
+    assert bounded.required_damping is not None
+    assert "marginally" not in bounded.limit
+
+
 def test_paddle_beyond_its_limit():
     """770 N/m on the paddle is active: a motion, its joules, and what to change."""
     verdict = assert_evidence(zw.check(PADDLE, zw.Wall(770)))

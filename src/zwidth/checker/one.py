@@ -12,10 +12,10 @@ from .document.refusal import EACH, Invalid, one_document, spend
 from .kinds import KINDS, Found, fields_of, kind_of
 from .scope import ACTIVE, Scope, weakest
 
-# One certificate, violation or motion: what the checker finds of it.
-
 STOPPED = "the checker stopped at something that it does not foresee"
 """Nothing is accepted then; a document that brings it there shows a fault of the checker."""
+
+NO_KIND = "verify takes an object with a kind; zwidth.checker.judge a whole answer, judge_file a file"
 
 
 class Verified(NamedTuple):
@@ -68,8 +68,8 @@ def verify(document: Mapping[str, Any]) -> Verified:
 
 def _verified(document: Mapping[str, Any]) -> Verified:
     spend(EACH)
-    if not isinstance(document, Mapping):
-        raise Invalid("a document must be an object with a kind")
+    if not isinstance(document, Mapping) or "kind" not in document:
+        raise Invalid(NO_KIND)
     if document.get("kind") == "corners":
         found, covered, (told, motion) = corners(document)
     else:

@@ -140,7 +140,7 @@ def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments:
     """What to say of arguments that no command takes."""
     option = next((u for u in unknown if u.startswith("-")), None)
     if option is None:
-        return f"too many arguments: {' '.join(unknown)}"
+        return f"too many arguments: {' '.join(unknown)}; what has a blank in it stands in double quotes"
     name = option.partition("=")[0]
     child = getattr(arguments, _CHILD, parser)
     options = [o for a in child._actions for o in a.option_strings if a.help != argparse.SUPPRESS]

@@ -62,8 +62,6 @@ def _asks_for_c() -> bool:
 
 def spelled(text: str) -> str:
     """The text as standard output will show it: what its encoding lacks is spelled out."""
-    if encodes(text):
-        return text
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return text.encode(encoding, "zwidth").decode(encoding)
 
@@ -135,17 +133,12 @@ def message_lines(text: str) -> list[str]:
 
 
 def print_json(text: str) -> None:
-    """Print JSON; escaped is what a terminal would obey, and what the encoding lacks."""
+    """Print JSON, which is UTF-8: for any other encoding in ASCII; escaped is what a terminal would obey."""
     text = OBEYED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
-    if not encodes(text):
+    if codecs.lookup(getattr(sys.stdout, "encoding", None) or "utf-8").name != "utf-8":
         text = "".join(c if c.isascii() else json.dumps(c)[1:-1] for c in text)
     with quiet_pipe():
         print(text)
-
-
-def check_new(path: Path, force: bool) -> None:
-    """Refuse a path that cannot be written, or where a file would be lost."""
-    check_target(path, force, "--force")
 
 
 def target(option: str, given: str | None, suffixes: Sequence[str], force: bool) -> Path | None:
@@ -155,7 +148,7 @@ def target(option: str, given: str | None, suffixes: Sequence[str], force: bool)
     path = Path(given)
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option}: the file must end in {', '.join(suffixes)}, got {given!r}")
-    check_new(path, force)
+    check_target(path, force, "--force")
     return path
 
 
@@ -174,7 +167,7 @@ def targets(
             f"{option}: {document.name!r} is the name of a picture, and what is saved is none; "
             "for a picture give --plot"
         )
-    check_new(document, force)
+    check_target(document, force, "--force")
     return picture, document
 
 

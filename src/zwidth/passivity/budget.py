@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import inf
 
 from zwidth.model.environment.environment import Environment
 from zwidth.model.environment.wall import wall_of
@@ -21,11 +22,12 @@ VIRTUAL_DAMPING = "virtual damping against viscous damping"
 DYNAMICS = "environment dynamics against viscous damping"
 QUANTIZATION = "quantization against Coulomb friction"
 UNSTABLE = "unstable environment"
+MARGINAL = "marginally stable environment, for which no damping is enough"
 NEGATIVE = "negative static stiffness"
 CONTACT = "contact made and broken"
 """The criterion holds while the hand stays inside, and a motion that touches and leaves gains."""
 
-LIMITS = (SAMPLING, DELAY, VIRTUAL_DAMPING, DYNAMICS, QUANTIZATION, UNSTABLE, NEGATIVE, CONTACT)
+LIMITS = (SAMPLING, DELAY, VIRTUAL_DAMPING, DYNAMICS, QUANTIZATION, UNSTABLE, NEGATIVE, CONTACT, MARGINAL)
 """Whatever may bind."""
 
 
@@ -72,8 +74,10 @@ def binding_limit(decision: Decision, account: Budget, environment: Environment)
     viscous = decision.viscous
     if isinstance(viscous, LinearRefutation) and viscous.reason in (NEGATIVE, UNSTABLE):
         return viscous.reason
+    if account.required == inf:
+        return MARGINAL
     friction = account.friction_required
-    friction_load = _load(friction, account.coulomb_friction) if friction is not None else float("inf")
+    friction_load = _load(friction, account.coulomb_friction) if friction is not None else inf
     if friction_load > _load(account.required, account.damping):
         return QUANTIZATION
     shares = {
@@ -87,4 +91,4 @@ def binding_limit(decision: Decision, account: Budget, environment: Environment)
 def _load(required: float, available: float) -> float:
     if required <= 0:
         return 0.0
-    return required / available if available > 0 else float("inf")
+    return required / available if available > 0 else inf

@@ -22,8 +22,7 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import answers, known
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import at_most, in_words, shown, shown_at_least
+from zwidth.quantity.text import in_words, shown, shown_at_least, shown_at_most
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -250,21 +249,18 @@ class LinearVerdict(Verdict):
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
-        rows = [("limit", self.limit)]
+        unit, need = self.device.unit, self.required_damping
         if parameter_limits.has_stiffness(self.environment):
-            most = at_most(self.max_stiffness, unit["stiffness"])
-            rows.append(("largest passive stiffness", shown(most, unit["stiffness"], 6)))
+            most = ("largest passive stiffness", shown_at_most(self.max_stiffness, unit("stiffness"), 6))
         else:
-            rows.append(("largest passive gain", shown(at_most(self.max_gain, "1"), "times this law", 6)))
-        rows.append(("required device damping", shown_at_least(self.required_damping, unit["damping"], 6)))
+            most = ("largest passive gain", shown_at_most(self.max_gain, "times this law", 6))
+        enough = "no amount is proved enough" if need is None else shown_at_least(need, unit("damping"), 6)
+        rows = [("limit", self.limit), most, ("required device damping", enough)]
         rows.append(("critical frequency", shown(self.critical_frequency, "Hz", 6)))
         for name, value in self.margins.items():
-            margin_unit = GLOSSARY[name].unit_for(self.device.motion)
-            rows.append((f"margin of {in_words(name)}", shown(value, margin_unit, 6)))
+            rows.append((f"margin of {in_words(name)}", shown(value, unit(name), 6)))
         if self.admissible_speed is not None:
-            speed = shown(self.admissible_speed, self.device.unit("velocity"), 6)
-            rows.append(("slower hands are safe up to", speed))
+            rows.append(("slower hands are safe up to", shown(self.admissible_speed, unit("velocity"), 6)))
         return [*rows, *super().rows()]
 
 

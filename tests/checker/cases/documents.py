@@ -79,7 +79,7 @@ CASES = [
         },
         "unit of damping",
     ),
-    refused("no kind", {"loop": SPRING["loop"]}, "kind must be corners"),
+    refused("no kind", {"loop": SPRING["loop"]}, "verify takes an object with a kind"),
     refused("another kind", {**SPRING, "kind": "springs"}, "kind must be"),
     refused("a kind that is a list", {**SPRING, "kind": ["spring"]}, "kind must be"),
     refused(

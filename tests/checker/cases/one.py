@@ -31,9 +31,9 @@ def what_a_check_stops_at_is_told() -> str:
         found = stopped(error)
         if found != one.Verified(False, said):
             return f"{error}: {found}"
-    for told in ([], "spring", None, 4):
-        if one.verify(told) != one.Verified(False, "a document must be an object with a kind"):
-            return f"{told!r} is no object"
+    for told in ([], "spring", None, 4, {}, {"format": "zwidth verdict 1", "certificate": spring(4)}):
+        if one.verify(told) != one.Verified(False, one.NO_KIND):
+            return f"{told!r} is no object with a kind"
     return ""
 
 

@@ -544,7 +544,7 @@ def files_are_read_with_every_digit() -> str:
         for content, phrase in (
             ('{"b": 1, "a": 1, "b": 2}', "'b' is given twice in one object"),
             ("{" + ", ".join([f'"{"k" * 70}": 1'] * 2) + "}", f"'{'k' * 60}' is given twice"),
-            ("{'a': 1}", "not JSON: "), (b'{"a": "\xff"}', "can't decode"), ("[" * 2000, "not JSON"),
+            ("{'a': 1}", "not JSON: "), (b'{"a": "\xff"}', "not UTF-8 text (b"), ("[" * 2000, "not JSON"),
             ("1e99999999999999999999", "expected a number of ordinary size, got 1e99999999999999999999"),
             ("1e" + "9" * 60, f"got 1e{'9' * 38}"),
         ):  # fmt: skip

@@ -23,6 +23,7 @@ DELAYED = device("0.46", "0.017", 1), zw.Wall(300)
 LATE = device("0.46", "0.017", "0.3"), zw.Wall(300)
 CONTACT = device("2.2", "0.24"), zw.HuntCrossley(20000, "1.5", 2)
 DETENT = device("0.16", "0.0165"), zw.NonlinearSpring.detents(2, "0.001", "0.07")
+SAMPLED = zw.PulseTransferFunction([30], [1, "-0.9"], "0.001")
 
 LIMITS = {
     "stiffness": (SPRING, "stiffness", "N/m"),
@@ -241,6 +242,8 @@ IIR = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         (CONTACT, {"parameter": "exponent"}, "no parameter 'exponent'"),
         (CONTACT, {"penetration": 1, "speed": "0.1"}, "9000 counts deep"),
         (SPRING, {"parameter": "clamped"}, "not one number"),
+        ((SPRING[0], SAMPLED), {"parameter": "rate"}, "made for one sample period, so no other rate"),
+        ((SPRING[0], SAMPLED), {"parameter": "sample_period"}, "so no other sample period can be asked for"),
         (SPRING, {"parameter": "velocity_filter"}, "not one number"),
         (SPRING, {"parameter": "motion"}, "no single value"),
         (SPRING, {"parameter": None}, "parameter"),

@@ -47,7 +47,7 @@ def read_file(path: str | Path) -> object:
             content.decode(), parse_float=_decimal, parse_int=_integer, object_pairs_hook=_once_each
         )
     except UnicodeDecodeError as error:
-        raise Unreadable(str(error)) from None
+        raise Unreadable(f"not UTF-8 text (byte {error.start}): write it by -o FILE, not by > FILE") from None
     except (ValueError, RecursionError) as error:
         raise Unreadable(f"not JSON: {error}") from None
 

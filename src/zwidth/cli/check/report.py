@@ -6,6 +6,7 @@ Whatever narrows the claim is in the short report too.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -194,8 +195,6 @@ def _friction(verdict: LinearVerdict, fancy: bool) -> Table:
     account, unit = verdict.budget, GLOSSARY["coulomb_friction"].unit_for(verdict.device.motion)
     table = _account("Coulomb, K Δ/2 against f_c" if verdict.decision.is_spring else "Coulomb")
     need = account.friction_required
-    if need is None:
-        table.add_row("needed", "", "no bound is known")
     scale = max(need or 0.0, account.coulomb_friction)
     _balance(table, need, account.coulomb_friction, scale, unit, "device f_c", fancy)
     return table
@@ -212,10 +211,11 @@ def _account(title: str) -> Table:
 def _balance(
     table: Table, need: float | None, have: float, scale: float, unit: str, name: str, fancy: bool
 ) -> None:
-    if need is not None:
+    if need is None:
+        table.add_row("needed", "", "no bound is known")
+    else:
         style = "red" if need > have * (1 + 1e-12) else "yellow"
-        table.add_row(
-            "needed", Text(bar(0, need, scale, _LONGEST_BAR, fancy), style=style), shown(need, unit)
-        )
+        enough = shown(need, unit) if need < inf else "no amount is enough"
+        table.add_row("needed", Text(bar(0, need, scale, _LONGEST_BAR, fancy), style=style), enough)
     picture = Text(bar(0, have, scale, _LONGEST_BAR, fancy), style="green")
     table.add_row(name, picture, shown(have, unit))

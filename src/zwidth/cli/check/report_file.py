@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from zwidth.cli.decision import asked, decided, exit_status
 from zwidth.cli.options import CONTACT, LAW, LOOP, PARAMETERS, contact, overrides
-from zwidth.cli.output import check_new, print_text, say_written
+from zwidth.cli.output import print_text, say_written
 from zwidth.errors import InputError
 from zwidth.showing import typed
+from zwidth.writing import check_target
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -39,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     target = Path(arguments.save)
     report.check_ending(target)
-    check_new(target, arguments.force)
+    check_target(target, arguments.force, "--force")
     tables = _of_a_pair(arguments.sources)
     verdict, told = _loop(arguments) if tables is None else _pair(tables, arguments)
     report.save(verdict, target, told, overwrite=arguments.force)

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from zwidth.cli.new import device, environment
 from zwidth.cli.new.questions import Asker, Written
-from zwidth.cli.output import check_new, print_text, quiet_pipe, say_written
+from zwidth.cli.output import print_text, quiet_pipe, say_written
 from zwidth.errors import InputError
 from zwidth.missing import suggestion
 from zwidth.model.specification.table import quoted
 from zwidth.showing import printable
-from zwidth.writing import writing_whole
+from zwidth.writing import check_target, writing_whole
 
 _KINDS = {"device": device, "environment": environment}
 
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("--device names what renders an environment: zwidth new environment --device FILE")
     if arguments.kind == "environment":
         environment.refuse_a_device(path)
-    check_new(path, arguments.force)
+    check_target(path, arguments.force, "--force")
     every = {question.key for one in _KINDS.values() for question in one.QUESTIONS}
     given = {key: value for key, value in vars(arguments).items() if key in every and value is not None}
     ask = Asker(given, not arguments.no_questions)

@@ -6,12 +6,12 @@ import argparse
 from pathlib import Path
 from textwrap import fill, indent
 
-from zwidth.cli.output import check_new, quiet_pipe
+from zwidth.cli.output import quiet_pipe
 from zwidth.errors import InputError
 from zwidth.model import samples
 from zwidth.model.specification.table import plain
 from zwidth.showing import typed
-from zwidth.writing import writing_whole
+from zwidth.writing import check_target, writing_whole
 
 OPTIONS = (
     {
@@ -42,7 +42,7 @@ def copy_to(folder: Path, force: bool) -> None:
     _make(folder)
     for name in samples.names():
         if (folder / name).exists():
-            check_new(folder / name, force)
+            check_target(folder / name, force, "--force")
     for name in samples.names():
         _make((folder / name).parent, parents=True)
         with writing_whole(folder / name) as file:

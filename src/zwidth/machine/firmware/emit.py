@@ -253,6 +253,8 @@ def check_folder(folder: Path) -> None:
     """Refuse what is there and no directory; a link that leads nowhere is there."""
     if os.path.lexists(folder) and not folder.is_dir():
         raise InputError(f"{folder} exists and is no directory; name one")
+    if folder.suffix in (".h", ".c", ".js", ".ino"):
+        raise InputError(f"{folder} is a name of a file; give that of the directory in which all files go")
 
 
 def emit(

@@ -150,7 +150,8 @@ class ContinuousTransferFunction(_Ratio):
         if self.discretization is None:
             raise InputError(
                 "a continuous H(s) needs a discretization, for the verdict depends on it: "
-                f"give discretization = one of {choices()}"
+                f"give discretization = one of {choices()}, of a system as "
+                "ContinuousTransferFunction(system, discretization=…)"
             )
         super().__post_init__()
         num, den, system = read_transfer_function(self.numerator, self.denominator)
@@ -197,7 +198,8 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
     if not is_system(thing):
         raise InputError(
             f"an environment is a wall, a solid, a transfer function, or a system of python-control, "
-            f"scipy.signal or harold; got {thing!r}"
+            f"scipy.signal or harold; got {thing!r}: a spring is Wall(stiffness=…) [N/m; rotary N·m/rad], "
+            "coefficients are PulseTransferFunction(numerator, denominator)"
         )
     system = read_system(thing)
     if system.time == "discrete" or (discretization is None and _is_constant(system)):
@@ -207,12 +209,6 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
         raise InputError(
             "the system has dt=None and so does not say whether it is H(s) or H(z); give it a dt, or write "
             "PulseTransferFunction(system) or ContinuousTransferFunction(system, discretization=…)"
-        )
-    if discretization is None:
-        raise InputError(
-            "a continuous system needs a discretization, for the verdict depends on it: "
-            "ContinuousTransferFunction(system, discretization=…), or discretization=… where that is an "
-            f"argument, with one of {choices()}; or discretize it yourself"
         )
     return ContinuousTransferFunction(system, discretization=discretization)
 

@@ -210,7 +210,7 @@ def parameter_of(device: Device, environment: Environment, name: str) -> Paramet
     """The parameter that is asked for, one of a rendered environment included; the laws follow it."""
     owner, _, key = name.rpartition(".")
     met = environment.met
-    in_environment = {f.name for f in fields(met)} - {"exponent"}  # it changes the unit of K
+    in_environment = {f.name for f in fields(met)} - {"exponent", "sample_period"}  # unit of K; the device's
     in_device = {f.name for f in fields(device)} | {"rate"}
     if key == "gain" and met.scaled(Fraction(1)) is not None:
         return _gain(device, environment)
@@ -254,6 +254,11 @@ def _of_environment(device: Device, environment: Environment, key: str) -> Param
 
 def _of_device(device: Device, environment: Environment, key: str) -> Parameter:
     motor = device.motor_side
+    if key in ("rate", "sample_period") and getattr(environment.met, "sample_period", None) is not None:
+        raise InputError(
+            f"H(z) was made for one sample period, so no other {in_words(key)} can be asked for: give H(s), "
+            "type transfer-function, ContinuousTransferFunction; or H(z) without its sample_period"
+        )
     known = 1 / motor.exact("sample_period") if key == "rate" else motor.exact(key)
 
     def change(value: Exact) -> Loop:

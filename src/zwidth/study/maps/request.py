@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -155,6 +156,8 @@ def request(
             )
     velocity = BackwardDifference() if velocity_filter is None else velocity_filter
     Wall(1, 1, velocity_filter=velocity)  # says what is wrong with it
+    if np.shape(cells) != (2,) or not all(isinstance(n, Real) and n >= 1 and n % 1 == 0 for n in cells):
+        raise InputError(f"cells are two whole numbers ≥ 1, such as (200, 200), got {cells!r}")
     k = _read_axis("stiffness", stiffness, cells[0], device.motion)
     b = _read_axis("virtual_damping", virtual_damping, cells[1], device.motion)
     if k.low.fraction < 0:
@@ -167,14 +170,11 @@ def request(
 
 
 def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int, motion: str) -> Axis:
-    low, high = (read_number(end, name, name, motion=motion) for end in both)
-    if low >= high:
-        raise InputError(
-            f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends"
-        )
-    if cells != int(cells) or cells < 1:
-        raise InputError(f"cells along {name} must be a whole number ≥ 1, got {cells}")
-    return Axis(low, high, int(cells))
+    given = list(both) if isinstance(both, np.ndarray) else both
+    span = read_number(given, name, name, uncertain=True, motion=motion)
+    if not isinstance(span, Interval) or span.low == span.high:
+        raise InputError(f"{name} is its two ends, such as (0, 1000), got {span}")
+    return Axis(span.low, span.high, int(cells))
 
 
 def scopes(asked: Request, speed: float) -> dict[str, Scope]:
