@@ -152,7 +152,10 @@ def _held(share: float) -> Stability:
 
 ASKS: dict[type, Callable[[float], Any]] = {
     LinearVerdict: lambda share: zw.check(PADDLE, zw.Wall(300 * share)),
-    Verdict: lambda share: zw.check(PADDLE, zw.NonlinearSpring([0, 0.001], [0, 0.3 * share])),
+    Verdict: lambda share: zw.check(
+        PADDLE.replace(coulomb_friction=0.00336),  # half a count of 300 N/m, and nothing left over
+        zw.NonlinearSpring([0, 0.001], [0, 0.3 * share]),
+    ),
     TransmissionVerdict: lambda share: zw.check(
         CABLE, zw.Wall(zw.check(CABLE, zw.Wall(100)).max_stiffness * share)
     ),

@@ -216,7 +216,7 @@ def heading(axes: Axes, text: str, size: float = 10.0, **style: Any) -> None:
 
 def page_heading(figure: Figure, text: str, size: float = 10.5, color: str = BLACK) -> None:
     """A title over all of a figure, as it is written, on as many lines as the width takes."""
-    lines = broken(text, 0.97 * figure.get_figwidth(), size)
+    lines = broken(text, 0.95 * figure.get_figwidth(), size)
     figure.suptitle(lines, x=0.01, ha="left", fontsize=size, color=color, parse_math=False)
 
 
