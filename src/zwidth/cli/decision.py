@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -35,18 +35,14 @@ class Asked(NamedTuple):
     law_table: Table | None
 
 
-def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
-    """The loop of the sources, the parameters and the laws of a command line.
-
-    `in_range`: True where a device of the catalogue may have its stated ranges in the place of what nobody
-        published.
-    """
+def asked(arguments: argparse.Namespace) -> Asked:
+    """The loop of the sources, the parameters and the laws of a command line."""
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import WITH_LAWS, Specification, built, merged, read_tables
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     device_table, environment_table = merged(tables, overrides(arguments))
-    given = built(device_table, environment_table, in_range)
+    given = built(device_table, environment_table)
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
     loop = Specification(given.device, rendered, given.ranges)
     return Asked(loop, device_table, environment_table, tables.get("law"))
@@ -65,7 +61,18 @@ def of_one_value(loop: Specification) -> Specification:
     return loop if device is loop.device else replace(loop, device=device)
 
 
-def device_of_one_value(device: Device) -> Device:
+def of_one_timing(loop: Specification) -> Specification:
+    """The same of rate and delay alone, where the law is decided for one of each."""
+    if loop.environment.has_transfer_function:
+        return loop
+    device = device_of_one_value(loop.device, _TIMING)
+    return replace(loop, device=device, ranges={k: v for k, v in loop.ranges.items() if k not in _TIMING})
+
+
+_TIMING = ("delay", "sample_period")
+
+
+def device_of_one_value(device: Device, of: Container[str] = _WORST) -> Device:
     """The device with the worst ends of its intervals, and a line to people about it."""
     from zwidth.cli.output import print_message
     from zwidth.quantity.exact import Exact, Interval, ends
@@ -74,7 +81,7 @@ def device_of_one_value(device: Device) -> Device:
     taken = {
         key: Exact(ends(given)[_WORST[key]])
         for key, given in device.parameters().items()
-        if key in _WORST and isinstance(given, Interval)
+        if key in _WORST and key in of and isinstance(given, Interval)
     }
     if not taken:
         return device
@@ -106,19 +113,6 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         if closed is not None:
             return with_value_iteration(device, law, closed, falling(progress))
         return check(device, law, contact=contact, progress=falling(progress))
-
-
-def one_timing(loop: Specification) -> None:
-    """Refuse a stated range of delay or rate where a law is decided for one of each."""
-    ranged = [key for key in ("sample_period", "delay") if key in loop.ranges]
-    if loop.environment.has_transfer_function or not ranged:
-        return
-    named = {"sample_period": ("rate", '--rate "1 kHz"'), "delay": ("delay", '--delay "1 ms"')}
-    names, options = zip(*(named[key] for key in ranged), strict=True)
-    raise InputError(
-        f"{loop.environment.describe(loop.device.motion)} is decided for one {' and one '.join(names)}, of "
-        f"which the catalogue states a range for {loop.device.name}: give yours, {' '.join(options)}"
-    )
 
 
 def ranges_of(loop: Specification, verdict: Verdict) -> OverRanges | None:

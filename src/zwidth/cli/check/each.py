@@ -113,7 +113,7 @@ def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specificati
         own: dict[str, Given] = {**tables, **({"environment": _copy(shared[0])} if shared else {})}
         if angles_in(list(typed.values())):
             keep_axis(own["device"], list(typed.values()))
-        yield built(*merged(own, typed), in_range=True)
+        yield built(*merged(own, typed))
 
 
 def _copy(table: Given) -> Given:
