@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -182,6 +184,22 @@ def test_a_table_without_time_is_told_what_is_missing(tmp_path):
         told = r'load against depth, "Depth .mm.", "Load .N.", without time.*--type nonlinear-spring --pos'
         with pytest.raises(zw.InputError, match=told):
             zw.tissue.read_test(path)
+
+
+def test_a_table_without_time_is_told_its_own_points(tmp_path):
+    """In the units of the command; of what comes out of the tissue again there is none."""
+    path = tmp_path / "press.csv"
+    path.write_text("Weg [mm];Last [g]\n0,0;0\n1,0;3,1\n2,0;9,8\n1,0;2,0\n", encoding="utf-8")
+    told = '--positions "0 m, 1 mm, 2 mm" --forces "0 N, 0.0304 N, 0.09611 N"'
+    with pytest.raises(zw.InputError, match=re.escape(told)):
+        zw.tissue.read_test(path)
+
+
+def test_a_pressure_is_no_force(tmp_path):
+    path = tmp_path / "press.csv"
+    path.write_text("Depth (mm),Stress (kPa)\n0,0\n1,0.2\n2,0.5\n", encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r'"Stress .kPa." is a pressure.* times the area of the probe'):
+        zw.tissue.read_test(path)
 
 
 @pytest.mark.parametrize("stated", [True, False])
