@@ -55,21 +55,16 @@ _WORST = {
 """At which end of an interval most energy leaks in, or least is lost.  Of a mass it is neither."""
 
 
-def of_one_value(loop: Specification) -> Specification:
+def of_one_value(loop: Specification, of: Container[str] = _WORST) -> Specification:
     """The loop with single values in the place of intervals, and a line to people about it."""
-    device = device_of_one_value(loop.device)
-    return loop if device is loop.device else replace(loop, device=device)
+    device = device_of_one_value(loop.device, of)
+    ranges = {key: own for key, own in loop.ranges.items() if key not in of}
+    return loop if device is loop.device else replace(loop, device=device, ranges=ranges)
 
 
 def of_one_timing(loop: Specification) -> Specification:
     """The same of rate and delay alone, where the law is decided for one of each."""
-    if loop.environment.has_transfer_function:
-        return loop
-    device = device_of_one_value(loop.device, _TIMING)
-    return replace(loop, device=device, ranges={k: v for k, v in loop.ranges.items() if k not in _TIMING})
-
-
-_TIMING = ("delay", "sample_period")
+    return loop if loop.environment.has_transfer_function else of_one_value(loop, ("delay", "sample_period"))
 
 
 def device_of_one_value(device: Device, of: Container[str] = _WORST) -> Device:

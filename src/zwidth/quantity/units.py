@@ -239,7 +239,6 @@ POUND = WEIGHT * Fraction("0.45359237")
 """Of force [N]."""
 
 _FORCES = {"gf": WEIGHT / 1000, "pond": WEIGHT / 1000, "kgf": WEIGHT, "kp": WEIGHT, "lbf": POUND}
-
 _UNITS = {
     **{
         p + name: Unit(f * u.scale, 0, u.dimension)

@@ -11,6 +11,7 @@ from scipy.signal import lfilter
 import zwidth as zw
 from zwidth.data.tissue import RecursiveSolid, fit_tissue, force_response
 from zwidth.data.tissue.experiment.history import Trial, history_of
+from zwidth.data.tissue.findings import coarse
 
 SOLID = zw.StandardLinearSolid(420, 230, 17)
 TRUE = {"stiffness": 420, "branch_stiffness": 230, "branch_damping": 17}
@@ -136,6 +137,14 @@ def test_a_coarse_position_is_remarked():
     t, x, f = record()
     assert any("in steps of 200 µm" in r for r in fitted(t, np.rint(x / 2e-4) * 2e-4, f).remarks)
     assert not fitted(t, np.rint(x / 1e-6) * 1e-6, f).remarks
+
+
+def test_a_ramp_is_not_read_in_steps():
+    """Of one speed, and so 0.4 mm from sample to sample: no encoder has such steps."""
+    t = 0.02 * np.arange(1500)
+    x = np.round(np.clip(t - 1, 0, 0.25) * 0.02, 9)
+    assert not list(coarse(x, 650, 0.002, "m"))
+    assert list(coarse(np.rint(np.clip(t - 1, 0, 20) / 80 / 4e-4) * 4e-4, 650, 0.002, "m"))
 
 
 def test_a_tracker_passes_over_what_says_nothing():

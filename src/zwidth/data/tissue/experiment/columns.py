@@ -189,19 +189,18 @@ _MOST_POINTS = 12
 def _as_spring(table: Table, depth: str, load: str) -> str:
     """Points of a curve on its way in as they are typed; others where a unit is not stated."""
     try:
-        scales = _factor(table, "indentation", depth, None), _factor(table, "force", load, None)
-        pieces = list(table.read((depth, load)))
-    except (InputError, AssertionError):
+        to_m, to_n = (
+            _factor(table, quantity, name, _unit(table, name) or "")
+            for quantity, name in (("indentation", depth), ("force", load))
+        )
+    except InputError:
         return '--positions "0, 1 mm, 2 mm" --forces "0, 0.1 N, 0.4 N"'
-    x, f = (
-        scale * np.concatenate(each) for scale, each in zip(scales, zip(*pieces, strict=True), strict=True)
-    )
-    known = np.isfinite(x) & np.isfinite(f)
-    x, f = x[known], f[known]
-    deeper = np.flatnonzero(np.diff(np.maximum.accumulate(x), prepend=-np.inf) > 0)
-    taken = deeper[np.unique(np.linspace(0, deeper.size - 1, _MOST_POINTS).astype(int))]
+    x, f = np.hstack([np.vstack(piece) for piece in table.read((depth, load))]) * [[to_m], [to_n]]
+    x, f = x[known := np.isfinite(x + f)], f[known]
+    x, f = x[deeper := np.diff(np.maximum.accumulate(x), prepend=-np.inf) > 0], f[deeper]
+    every = slice(None, None, -(-x.size // _MOST_POINTS) or 1)
     positions, forces = (
-        ", ".join(shown(float(v), u, 4) for v in each[taken]) for each, u in ((x, "m"), (f, "N"))
+        ", ".join(shown(v, unit, 4) for v in of[every].tolist()) for of, unit in ((x, "m"), (f, "N"))
     )
     return f'--positions "{positions}" --forces "{forces}"'
 
