@@ -48,14 +48,14 @@ def asked(arguments: argparse.Namespace) -> Asked:
     return Asked(loop, device_table, environment_table, tables.get("law"))
 
 
-_WORST = {
+WORST = {
     **dict.fromkeys(("delay", "sample_period", "resolution", "force_resolution"), 1),
     **dict.fromkeys(("damping", "coulomb_friction", "force_limit"), 0),
 }
 """At which end of an interval most energy leaks in, or least is lost.  Of a mass it is neither."""
 
 
-def of_one_value(loop: Specification, of: Container[str] = _WORST) -> Specification:
+def of_one_value(loop: Specification, of: Container[str] = WORST) -> Specification:
     """The loop with single values in the place of intervals, and a line to people about it."""
     device = device_of_one_value(loop.device, of)
     ranges = {key: own for key, own in loop.ranges.items() if key not in of}
@@ -67,16 +67,16 @@ def of_one_timing(loop: Specification) -> Specification:
     return loop if loop.environment.has_transfer_function else of_one_value(loop, ("delay", "sample_period"))
 
 
-def device_of_one_value(device: Device, of: Container[str] = _WORST) -> Device:
+def device_of_one_value(device: Device, of: Container[str] = WORST) -> Device:
     """The device with the worst ends of its intervals, and a line to people about it."""
     from zwidth.cli.output import print_message
     from zwidth.quantity.exact import Exact, Interval, ends
     from zwidth.quantity.text import in_words, shown
 
     taken = {
-        key: Exact(ends(given)[_WORST[key]])
+        key: Exact(ends(given)[WORST[key]])
         for key, given in device.parameters().items()
-        if key in _WORST and key in of and isinstance(given, Interval)
+        if key in WORST and key in of and isinstance(given, Interval)
     }
     if not taken:
         return device

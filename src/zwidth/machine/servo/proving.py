@@ -109,8 +109,9 @@ def least_friction(device: Device) -> Device:
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]
     needed = [key for key in uncertain if key not in ("mass", "friction_speed")]
     if needed:
+        told = shown(getattr(device, needed[0]), device.unit(needed[0]))
         raise InputError(
-            f"{needed[0]} is the interval {getattr(device, needed[0])}, and a loop runs with one number: "
+            f"{needed[0]} is the interval {told}, and a loop runs with one number: "
             "give one; damping, coulomb_friction, delay and mass may stay intervals, which the verdict covers"
         )
     return found.replace(mass=None) if "mass" in uncertain else found
