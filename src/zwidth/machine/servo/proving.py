@@ -109,10 +109,11 @@ def least_friction(device: Device) -> Device:
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]
     needed = [key for key in uncertain if key not in ("mass", "friction_speed")]
     if needed:
-        told = shown(getattr(device, needed[0]), device.unit(needed[0]))
+        key, unit = needed[0], device.unit(needed[0])
+        typed = f'--{key.replace("_", "-")} "{shown(ends(getattr(device, key))[1], unit)}"'
         raise InputError(
-            f"{needed[0]} is the interval {told}, and a loop runs with one number: "
-            "give one; damping, coulomb_friction, delay and mass may stay intervals, which the verdict covers"
+            f"{key} is the interval {shown(getattr(device, key), unit)}, and a loop runs with one number: "
+            f"give yours, such as {typed}; damping, coulomb_friction, delay and mass may stay intervals"
         )
     return found.replace(mass=None) if "mass" in uncertain else found
 
