@@ -41,7 +41,7 @@ def test_the_report_has_a_row_for_each_joint(run):
     said = run(ARMS)
     for part in (
         "PASSIVE Of 2 joints, each by itself: 2 passive. J",
-        ": No motion of two hands, one on each arm, however fast or skilled, can take energy out of this pair: ",
+        ": No motion of two hands, one on each arm, however fast or skilled, can take energy out of this ",
         "joint K kd b verdict limit with ideal drive",
         "joint largest K best K with kd b needed",
         "assumes",

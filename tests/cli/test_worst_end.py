@@ -42,3 +42,27 @@ def test_the_limit_is_that_of_the_worst_end(run):
     device = zw.Device(damping=0.2, sample_period=0.001, mass=(1, 2))
     loop = Specification(device, zw.Wall(stiffness=100))
     assert of_one_value(loop) is loop
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "limit touch --stiffness 20 --json",
+        "map touch --stiffness 0:40 --virtual-damping 0:0.2 --cells 8x8 --mass '50 g' --json",
+        "simulate touch --mass '50 g' --stiffness 20 --operator typical --duration '0.2 s'",
+        "diagnose shaking.csv openffboard-wheel",
+    ],
+)
+def test_a_stated_range_of_the_catalogue(line, run):
+    """What nobody published is taken at the worst end of its range, not asked for."""
+    run("examples .")
+    told = " ".join(run(line).err.split())
+    assert "the worst end is taken, for one value is needed: damping" in told
+
+
+@pytest.mark.parametrize("command", ["check", "report -o page.html"])
+def test_a_law_that_is_decided_for_one_delay(command, run):
+    """A Hunt–Crossley contact on a device whose delay nobody published: the longest is taken."""
+    contact = "touch --type hunt-crossley --stiffness 10 --exponent 1 --dissipation 0"
+    found = run(f"{command} {contact}", None)
+    assert "for one value is needed: delay 1 ms" in " ".join(found.err.split())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -35,46 +35,48 @@ class Asked(NamedTuple):
     law_table: Table | None
 
 
-def asked(arguments: argparse.Namespace, in_range: bool = False) -> Asked:
-    """The loop of the sources, the parameters and the laws of a command line.
-
-    `in_range`: True where a device of the catalogue may have its stated ranges in the place of what nobody
-        published.
-    """
+def asked(arguments: argparse.Namespace) -> Asked:
+    """The loop of the sources, the parameters and the laws of a command line."""
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import WITH_LAWS, Specification, built, merged, read_tables
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     device_table, environment_table = merged(tables, overrides(arguments))
-    given = built(device_table, environment_table, in_range)
+    given = built(device_table, environment_table)
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
     loop = Specification(given.device, rendered, given.ranges)
     return Asked(loop, device_table, environment_table, tables.get("law"))
 
 
-_WORST = {
+WORST = {
     **dict.fromkeys(("delay", "sample_period", "resolution", "force_resolution"), 1),
     **dict.fromkeys(("damping", "coulomb_friction", "force_limit"), 0),
 }
 """At which end of an interval most energy leaks in, or least is lost.  Of a mass it is neither."""
 
 
-def of_one_value(loop: Specification) -> Specification:
+def of_one_value(loop: Specification, of: Container[str] = WORST) -> Specification:
     """The loop with single values in the place of intervals, and a line to people about it."""
-    device = device_of_one_value(loop.device)
-    return loop if device is loop.device else replace(loop, device=device)
+    device = device_of_one_value(loop.device, of)
+    ranges = {key: own for key, own in loop.ranges.items() if key not in of}
+    return loop if device is loop.device else replace(loop, device=device, ranges=ranges)
 
 
-def device_of_one_value(device: Device) -> Device:
+def of_one_timing(loop: Specification) -> Specification:
+    """The same of rate and delay alone, where the law is decided for one of each."""
+    return loop if loop.environment.has_transfer_function else of_one_value(loop, ("delay", "sample_period"))
+
+
+def device_of_one_value(device: Device, of: Container[str] = WORST) -> Device:
     """The device with the worst ends of its intervals, and a line to people about it."""
     from zwidth.cli.output import print_message
     from zwidth.quantity.exact import Exact, Interval, ends
     from zwidth.quantity.text import in_words, shown
 
     taken = {
-        key: Exact(ends(given)[_WORST[key]])
+        key: Exact(ends(given)[WORST[key]])
         for key, given in device.parameters().items()
-        if key in _WORST and isinstance(given, Interval)
+        if key in WORST and key in of and isinstance(given, Interval)
     }
     if not taken:
         return device
@@ -106,19 +108,6 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         if closed is not None:
             return with_value_iteration(device, law, closed, falling(progress))
         return check(device, law, contact=contact, progress=falling(progress))
-
-
-def one_timing(loop: Specification) -> None:
-    """Refuse a stated range of delay or rate where a law is decided for one of each."""
-    ranged = [key for key in ("sample_period", "delay") if key in loop.ranges]
-    if loop.environment.has_transfer_function or not ranged:
-        return
-    named = {"sample_period": ("rate", '--rate "1 kHz"'), "delay": ("delay", '--delay "1 ms"')}
-    names, options = zip(*(named[key] for key in ranged), strict=True)
-    raise InputError(
-        f"{loop.environment.describe(loop.device.motion)} is decided for one {' and one '.join(names)}, of "
-        f"which the catalogue states a range for {loop.device.name}: give yours, {' '.join(options)}"
-    )
 
 
 def ranges_of(loop: Specification, verdict: Verdict) -> OverRanges | None:

@@ -104,7 +104,9 @@ def _such_as(unit: str) -> str:
 
 
 def _kind(rest: str, given: Unit, wanted: Unit) -> str:
-    """What was given, and for nanometres in the place of a torque what to write."""
+    """What was given, and for nanometres in the place of a torque, or a weight, what to write."""
+    if rest in ("g", "kg") and wanted.dimension == unit_of("N").dimension:
+        return f"{kind_of(given)}; its weight is in {rest}f"
     torque = unit_of("N*m").dimension
     slip = rest.startswith(("nm", "mnm")) and wanted.dimension[:2] == torque[:2]
     return kind_of(given) + ("; nm is a nanometre, a newton metre is Nm" if slip else "")
@@ -230,6 +232,13 @@ _PREFIXED = {
     "V": Unit(Fraction(1), 0, (1, 2, -3, -1, 0)),
     "H": Unit(Fraction(1), 0, (1, 2, -2, -2, 0)),
 }
+WEIGHT = Fraction("9.80665")
+"""Of a kilogram [N], by definition (3rd CGPM, 1901)."""
+
+POUND = WEIGHT * Fraction("0.45359237")
+"""Of force [N]."""
+
+_FORCES = {"gf": WEIGHT / 1000, "pond": WEIGHT / 1000, "kgf": WEIGHT, "kp": WEIGHT, "lbf": POUND}
 _UNITS = {
     **{
         p + name: Unit(f * u.scale, 0, u.dimension)
@@ -237,6 +246,7 @@ _UNITS = {
         for name, u in _PREFIXED.items()
     },
     **_PREFIXED,
+    **{name: Unit(scale, 0, (1, 1, -2, 0, 0)) for name, scale in _FORCES.items()},
     "min": Unit(Fraction(60), 0, (0, 0, 1, 0, 0)),
     "deg": Unit(Fraction(1, 180), 1, (0, 0, 0, 0, 1)),
     "turn": Unit(Fraction(2), 1, (0, 0, 0, 0, 1)),

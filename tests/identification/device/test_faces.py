@@ -61,6 +61,13 @@ def test_a_log_a_file_and_a_dataset_give_the_same(found, tmp_path):
     assert str(path) == of_file.source
 
 
+def test_a_position_off_by_1000_is_refused():
+    time, position, force = paddle()
+    log = zw.Log.from_arrays(time=time, position=1e3 * position, hand_force=force, resolution=1e3 * STEP)
+    with pytest.raises(zw.InputError, match=r'no hand does: .*"mm"'):
+        zw.identify(log)
+
+
 def test_a_mass_may_carry_a_unit():
     log = log_of()
     with_unit, plain = zw.identify(log, mass="35.7 g"), zw.identify(log, mass=0.0357)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -9,6 +11,7 @@ from scipy.signal import lfilter
 import zwidth as zw
 from zwidth.data.tissue import RecursiveSolid, fit_tissue, force_response
 from zwidth.data.tissue.experiment.history import Trial, history_of
+from zwidth.data.tissue.findings import coarse
 
 SOLID = zw.StandardLinearSolid(420, 230, 17)
 TRUE = {"stiffness": 420, "branch_stiffness": 230, "branch_damping": 17}
@@ -136,6 +139,14 @@ def test_a_coarse_position_is_remarked():
     assert not fitted(t, np.rint(x / 1e-6) * 1e-6, f).remarks
 
 
+def test_a_ramp_is_not_read_in_steps():
+    """Of one speed, and so 0.4 mm from sample to sample: no encoder has such steps."""
+    t = 0.02 * np.arange(1500)
+    x = np.round(np.clip(t - 1, 0, 0.25) * 0.02, 9)
+    assert not list(coarse(x, 650, 0.002, "m"))
+    assert list(coarse(np.rint(np.clip(t - 1, 0, 20) / 80 / 4e-4) * 4e-4, 650, 0.002, "m"))
+
+
 def test_a_tracker_passes_over_what_says_nothing():
     """A load cell at its stop, and holes: the tracker ends where it ends without them."""
     t, x, f = (values[::10] for values in record(12.0))
@@ -182,6 +193,22 @@ def test_a_table_without_time_is_told_what_is_missing(tmp_path):
         told = r'load against depth, "Depth .mm.", "Load .N.", without time.*--type nonlinear-spring --pos'
         with pytest.raises(zw.InputError, match=told):
             zw.tissue.read_test(path)
+
+
+def test_a_table_without_time_is_told_its_own_points(tmp_path):
+    """In the units of the command; of what comes out of the tissue again there is none."""
+    path = tmp_path / "press.csv"
+    path.write_text("Weg [mm];Last [g]\n0,0;0\n1,0;3,1\n2,0;9,8\n1,0;2,0\n", encoding="utf-8")
+    told = '--positions "0 m, 1 mm, 2 mm" --forces "0 N, 0.0304 N, 0.09611 N"'
+    with pytest.raises(zw.InputError, match=re.escape(told)):
+        zw.tissue.read_test(path)
+
+
+def test_a_pressure_is_no_force(tmp_path):
+    path = tmp_path / "press.csv"
+    path.write_text("Depth (mm),Stress (kPa)\n0,0\n1,0.2\n2,0.5\n", encoding="utf-8")
+    with pytest.raises(zw.InputError, match=r'"Stress .kPa." is a pressure.* times the area of the probe'):
+        zw.tissue.read_test(path)
 
 
 @pytest.mark.parametrize("stated", [True, False])

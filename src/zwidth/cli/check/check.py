@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from zwidth.cli.decision import NAMES, asked, decided, exit_status, one_timing, ranges_of, with_hands
+from zwidth.cli.decision import NAMES, asked, decided, exit_status, of_one_timing, ranges_of, with_hands
 from zwidth.cli.options import CONTACT, IN_FULL, LAW, LOOP, PARAMETERS, contact, output
 from zwidth.cli.output import print_found, printed, targets
 
@@ -44,8 +44,7 @@ OPTIONS = (
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth check`: the status says the outcome."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = asked(arguments, in_range=True).loop
-    one_timing(loop)
+    loop = of_one_timing(asked(arguments).loop)
     active = _tolerated(loop, arguments.active_below)
     hands = with_hands(loop, arguments.hands)
     verdict = decided(loop, contact(arguments))

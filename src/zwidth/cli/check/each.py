@@ -107,7 +107,7 @@ def _loops(sources: list[str], typed: Mapping[str, str]) -> Iterator[Specificati
             own["environment"] = deepcopy(shared[0])
         if angles_in(list(typed.values())):
             keep_axis(own["device"], list(typed.values()))
-        yield built(*merged(own, typed), in_range=True)
+        yield built(*merged(own, typed))
 
 
 def _named(loops: Iterator[Specification]) -> dict[str, Specification]:

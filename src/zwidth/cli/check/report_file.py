@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from zwidth.cli.decision import asked, decided, exit_status
+from zwidth.cli.decision import asked, decided, exit_status, of_one_timing
 from zwidth.cli.options import CONTACT, LAW, LOOP, PARAMETERS, contact, overrides
 from zwidth.cli.output import print_text, say_written
 from zwidth.errors import InputError
@@ -53,9 +53,10 @@ def _loop(arguments: argparse.Namespace) -> tuple[Answer, Provenance]:
     """The verdict on a device and a law, and where their numbers come from."""
     from zwidth.show.report.provenance import Provenance, file_of, of_device, of_environment
 
-    given = asked(arguments, in_range=True)
-    device, environment, typed = given.loop.device, given.loop.environment, arguments.law or ()
-    verdict = decided(given.loop, contact(arguments))
+    given = asked(arguments)
+    loop, typed = of_one_timing(given.loop), arguments.law or ()
+    device, environment = loop.device, loop.environment
+    verdict = decided(loop, contact(arguments))
     rows = of_environment(given.environment_table, environment, device.motion, given.law_table, typed)
     return verdict, Provenance(
         (*of_device(given.device_table, device), *rows),

@@ -136,11 +136,11 @@ def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | N
     words = overrides(arguments)
     if not words and not arguments.sources:
         return None, None
-    from zwidth.cli.decision import asked
-    from zwidth.model.specification.read import WITH_LAWS, read_tables, specified_device
+    from zwidth.cli.decision import asked, device_of_one_value, of_one_value
+    from zwidth.model.specification.read import WITH_LAWS, read_tables, specified_in_range
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     if "environment" in tables or arguments.law or len(given(arguments, _DEVICE)) < len(words):
-        loop = asked(arguments).loop
+        loop = of_one_value(asked(arguments).loop)
         return loop.device, loop.environment
-    return specified_device(tables, words), None
+    return device_of_one_value(specified_in_range(tables, words).device), None

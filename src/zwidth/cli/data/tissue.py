@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.data.results import FittedTissue, OnDevice
-from zwidth.cli.decision import decided, device_of_one_value, exit_status, one_timing, ranges_of
+from zwidth.cli.decision import decided, device_of_one_value, exit_status, of_one_timing, ranges_of
 from zwidth.cli.options import IN_FULL, as_options, device_parameters, given, look_for, output, pairs_of
 from zwidth.cli.output import print_found, printed, targets
 from zwidth.errors import InputError
@@ -160,9 +160,8 @@ def _wall(test: TissueTest, found: DeviceInRange, rule: Any) -> OnDevice:
     """
     from zwidth.model.specification.read import Specification
 
-    device = found.device
-    loop = Specification(device, test.environment(rule), found.ranges)
-    one_timing(loop)
+    loop = of_one_timing(Specification(found.device, test.environment(rule), found.ranges))
+    device = loop.device
     verdict = decided(loop)
     asked = OnDevice(device, verdict, ranges_of(loop, verdict))
     worst = device_of_one_value(device)

@@ -65,13 +65,14 @@ def _core(typed: str | None) -> int | None:
 
 def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | None, Exact | None]:
     """Device, environment and period; None for what was not given, and for a period that the device has."""
+    from zwidth.cli.decision import device_of_one_value, of_one_value
     from zwidth.model.specification.laws import with_laws
     from zwidth.model.specification.read import (
         DEVICE_KEYS,
         WITH_LAWS,
         read_tables,
         specified,
-        specified_device,
+        specified_in_range,
     )
 
     tables, typed = read_tables(arguments.sources, WITH_LAWS), overrides(arguments)
@@ -79,8 +80,8 @@ def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | N
     if not tables and not laws and set(typed) <= set(_TIMING):
         return None, None, _period(typed)
     if "environment" not in tables and not laws and set(typed) <= set(DEVICE_KEYS):
-        return specified_device(tables, typed), None, None
-    given = specified(tables, typed)
+        return device_of_one_value(specified_in_range(tables, typed).device), None, None
+    given = of_one_value(specified(tables, typed))
     rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
     return given.device, rendered, None
 

@@ -78,7 +78,7 @@ FAULT = 5
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth serve`: 0 where it ran to its end, 5 where the force ended by a fault, else as `check`."""
-    from zwidth.cli.decision import decided, exit_status, of_one_value
+    from zwidth.cli.decision import WORST, decided, exit_status, of_one_value
     from zwidth.cli.machine.serve_commands import listen
     from zwidth.machine.servo.proving import NotProved
     from zwidth.machine.servo.safety import read_safety
@@ -90,10 +90,12 @@ def run(arguments: argparse.Namespace) -> int:
     tables = read_tables(arguments.sources, (*SERVED_TABLES, *OF_A_PAIR))
     if any(name in tables for name in OF_A_PAIR):
         return _serve_pair(arguments, tables)
-    loop = of_one_value(specified({k: t for k, t in tables.items() if k in WITH_LAWS}, overrides(arguments)))
-    law = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
+    loop = specified({k: t for k, t in tables.items() if k in WITH_LAWS}, overrides(arguments))
     motion = loop.device.motion
     connection, placement = reached(told(arguments, tables, CONNECTION, connection_parameters), motion)
+    of_it = () if connection is None else ("resolution", "sample_period")  # its law counts with its own
+    loop = of_one_value(loop, WORST.keys() - of_it)
+    law = with_laws(loop.environment, tables.get("law"), arguments.law, motion)
     commands = [partial(listen, arguments)] if arguments.commands else []
     asked = contact(arguments)
     try:

@@ -102,7 +102,7 @@ RATIO = _question(
 )._replace(needed=True, enter="1")
 RADIUS = _question(
     "drum_radius",
-    "Radius of the drum or pulley on the motor's axis? such as 10 mm",
+    "Radius of the drum or pulley on the motor's axis; behind a gear of 5:1 a fifth of it? such as 10 mm",
     "The force at the handle is torque over radius.",
     "Not known, so nothing is taken from the motor's data sheet.",
 )._replace(needed=True)

@@ -13,7 +13,7 @@ from zwidth.cli.decision import NAMES, device_of_one_value, named_hands
 from zwidth.cli.options import DEVICE, FORCE, PLOT, device_parameters, given, whole
 from zwidth.cli.output import print_found, print_message, targets
 from zwidth.errors import InputError
-from zwidth.model.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_device
+from zwidth.model.specification.read import LOOP_TABLES, keep_axis, read_tables, specified_in_range
 from zwidth.model.specification.table import Table, plain, quoted
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.spoken import spoken_data
@@ -105,7 +105,7 @@ def _device(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Devic
             "--damping is the friction of the device itself, one value; the range of the wall's damping is "
             "--virtual-damping LOW:HIGH"
         )
-    return device_of_one_value(specified_device(tables, overrides))
+    return device_of_one_value(specified_in_range(tables, overrides).device)
 
 
 def _filter_of(table: Table | None, motion: str) -> VelocityEstimator | None:

@@ -187,16 +187,7 @@ def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], sourc
     return {quantity: column for quantity, column in chosen.items() if column is not None}
 
 
-WEIGHT = Fraction("9.80665")
-"""Of a kilogram [N], by definition (3rd CGPM, 1901)."""
-
-POUND = WEIGHT * Fraction("0.45359237")
-"""Of force [N]."""
-
 _OUTSIDE: Mapping[str, tuple[str, Fraction]] = {
-    **dict.fromkeys(("gf", "pond"), ("N", WEIGHT / 1000)),
-    **dict.fromkeys(("kgf", "kp"), ("N", WEIGHT)),
-    "lbf": ("N", POUND),
     **dict.fromkeys(("in", "inch", "inches"), ("m", Fraction("0.0254"))),
     **dict.fromkeys(("d", "day", "days", "tag", "tage"), ("s", Fraction(86400))),
     **dict.fromkeys(("h", "hr", "hours"), ("s", Fraction(3600))),

@@ -49,8 +49,13 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
 
 def coarse(position: Array, stiffness: float, rms: float, unit: str) -> Iterator[str]:
     """Why intervals are too narrow: most of what the fit leaves [N; N·m] may be steps of the position."""
-    grid = grid_of(position)
-    if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
+    grid, moves = grid_of(position), np.diff(position)
+    if grid is None:
+        return
+    alike = np.abs(np.diff(moves)) < 0.5 * grid.step
+    steady = (moves[1:-1] != 0) & alike[1:] & alike[:-1]  # on a ramp of one speed, sample by sample
+    is_ramp = 2 * np.count_nonzero(steady) > np.count_nonzero(moves)
+    if not is_ramp and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
             f"the position is read in steps of {shown(grid.step, unit, 3)}, and most of what the fit leaves "
             "may come from them: the intervals take the position for exact and are too narrow; move further, "

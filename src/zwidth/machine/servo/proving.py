@@ -28,7 +28,7 @@ from zwidth.passivity.wording import of_transmission
 from zwidth.quantity.answered import answered
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.text import shown, told_quantity
+from zwidth.quantity.text import shown
 from zwidth.showing import Part
 
 Decide = Callable[[Device, Environment], Verdict]
@@ -109,10 +109,11 @@ def least_friction(device: Device) -> Device:
     uncertain = [key for key, value in found.parameters().items() if isinstance(value, Interval)]
     needed = [key for key in uncertain if key not in ("mass", "friction_speed")]
     if needed:
-        given = told_quantity(getattr(device, needed[0]), needed[0], device.motion)
+        key, unit = needed[0], device.unit(needed[0])
+        typed = f'--{key.replace("_", "-")} "{shown(ends(getattr(device, key))[1], unit)}"'
         raise InputError(
-            f"{needed[0]} is the interval {given}, and a loop runs with one number: give one; damping, "
-            "Coulomb friction, delay and mass may stay intervals, which the verdict covers"
+            f"{key} is the interval {shown(getattr(device, key), unit)}, and a loop runs with one number: "
+            f"give yours, such as {typed}; damping, coulomb_friction, delay and mass may stay intervals"
         )
     return found.replace(mass=None) if "mass" in uncertain else found
 

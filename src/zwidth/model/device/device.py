@@ -335,7 +335,7 @@ def _read(key: str, value: Given | None, motion: str) -> Exact | Interval | None
         if own.required:
             raise InputError(
                 f"{key} [{own.unit_for(motion)}] is needed and was not given: measure it, or give a guess "
-                "and see what would follow"
+                f'and see what would follow, for example {key} = "0.1 {own.unit_for(motion)}"'
             )
         return None
     number: Exact | Interval = read_number(

@@ -115,10 +115,11 @@ def keep_axis(device: Table, rendered: object) -> None:
         device.values.setdefault("motion", "rotary")
 
 
-def built(device_table: Table, environment: Table, in_range: bool = False) -> Specification:
+def built(device_table: Table, environment: Table, in_range: bool = True) -> Specification:
     """The device and the environment that two tables describe.
 
-    With `in_range` a device of the catalogue may have stated ranges in the place of what nobody published.
+    Of the catalogue with stated ranges in the place of what nobody published; without `in_range` it is asked
+    for.
     """
     found = _in_range(device_table) if in_range else DeviceInRange(build_device(device_table), {})
     return Specification(found.device, build_environment(environment, found.device.motion), found.ranges)

@@ -54,7 +54,7 @@ def word(value: object, key: str, words: tuple[str, ...]) -> str:
 def coefficients(value: object, key: str) -> list[Exact]:
     """The coefficients of a polynomial: a list, or a text such as "1, -0.5"."""
     if isinstance(value, str):
-        value = re.split(r"[\s,]+", value.strip("[] \t\n"))
+        value = re.split(r"[\s,]+", _without_decimal_commas(value, key))
     if not isinstance(value, list):
         raise InputError(f"{key} is a list of numbers in descending powers, such as {key} = [1, 0.5]")
     return [parse_number(c, "1", key) for c in value]
@@ -63,10 +63,22 @@ def coefficients(value: object, key: str) -> list[Exact]:
 def quantities(value: object, unit: str, key: str) -> list[Exact]:
     """Several values of one quantity: a list, or a text such as "0, 1 mm, 2 mm"."""
     if isinstance(value, str):
-        value = [part.strip() for part in value.strip("[] \t\n").split(",")]
+        value = [part.strip() for part in _without_decimal_commas(value, key).split(",")]
     if not isinstance(value, list):
         raise InputError(f"{key} is a list of numbers, such as {key} = [0, 0.01]")
     return [parse_number(v, unit, f"{key}[{i}]") for i, v in enumerate(value)]
+
+
+def _without_decimal_commas(text: str, key: str) -> str:
+    """What stands in the brackets of a list; "0, 0,4 N" may be two numbers or three, and is refused."""
+    inside = text.strip("[] \t\n")
+    doubtful = re.search(r"(?<![\d.])\d+,\d+(?![\d.])", inside)
+    if doubtful and re.search(r",\s|;", inside):
+        raise InputError(
+            f"{key}: {quoted(doubtful[0])} may be one number or two, in {quoted(inside)}; a fraction has a "
+            f'point, "{doubtful[0].replace(",", ".")}", and between two numbers stand a comma and a space'
+        )
+    return inside
 
 
 def branches(value: object, motion: str) -> list[tuple[Exact | Interval, Exact | Interval]]:

@@ -92,7 +92,7 @@ def from_sources(
         )
     begun = completed(found["device"], typed) if "device" in found else {}
     if "environment" in found or rendered:
-        loop = built(*merged(found, typed))
+        loop = built(*merged(found, typed), in_range=False)
         device, environment = loop.device, loop.environment
     else:
         device = specified_device(found, typed)

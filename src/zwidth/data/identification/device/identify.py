@@ -33,6 +33,7 @@ from zwidth.errors import InputError
 from zwidth.lazy import above
 from zwidth.model.specification.read import question_unit
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Part, Shown
 from zwidth.writing import check_target, writing_whole
@@ -42,6 +43,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Model = Literal["Coulomb and viscous", "viscous"]
+
+QUICKEST_HAND = 30.0
+"""[m/s] With nothing in it."""
 
 
 def identify_log(
@@ -73,6 +77,11 @@ def identify_log(
     directions, slopes = found.directions(names), found.slopes(names, min(quickest))
     if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log, zero))
+    if log.motion == "linear" and min(quickest) > QUICKEST_HAND:
+        raise InputError(
+            f"{log.source}: the handle moves at {shown(min(quickest), 'm/s', 3)}, and no hand does: most "
+            'likely the unit of the position is another, such as units={"position": "mm"}'
+        )
     refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     shaken = model == "Coulomb and viscous" and mass is None and seen_to_swing(log, estimates, late)
     apart = two_masses(log, estimates, late) if shaken else None

@@ -16,14 +16,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.columns import POUND, WEIGHT, measured_in
+from zwidth.data.logs.columns import measured_in
 from zwidth.data.logs.read import table_of_file
 from zwidth.data.logs.rows import seconds, side_by_side
 from zwidth.data.logs.table import Finding, Table, listed, readable, understood_sheets
 from zwidth.errors import InputError
 from zwidth.native.compiled import Array
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.units import Dimension, spelled, unit_of
+from zwidth.quantity.text import shown
+from zwidth.quantity.units import POUND, WEIGHT, Dimension, spelled, unit_of
 
 QUANTITIES = ("time", "indentation", "force")
 
@@ -157,13 +158,19 @@ def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[
         [chosen[other]] if other in chosen else _candidates(table, other, list(table.units))
         for other in QUANTITIES[1:]
     ]
-    if not candidates and quantity == "time" and all(others):
+    pressures = [name for name in table.units if spelled(_unit(table, name) or "") in _PRESSURES]
+    if not all(others) and not chosen and pressures:
         raise InputError(
-            f"{table.source}: a table of load against depth, {listed([names[0] for names in others])}, "
+            f"{table.source}: {listed(pressures)} is a pressure, and a device renders a force: give that "
+            "in a column such as force_N, the pressure times the area of the probe; 1 kPa on 1 cm^2 is 0.1 N"
+        )
+    if not candidates and quantity == "time" and all(others):
+        depth, load = (names[0] for names in others)
+        raise InputError(
+            f"{table.source}: a table of load against depth, {listed([depth, load])}, "
             "without time: how a tissue relaxes is not in it. Export the time of each row, or write it in a "
             "column time_s where rows came at a steady rate; or render the curve as a spring by some of its "
-            'points: zwidth check DEVICE --type nonlinear-spring --positions "0, 1 mm, 2 mm" --forces '
-            '"0, 0.1 N, 0.4 N"'
+            f"points: zwidth check DEVICE --type nonlinear-spring {_as_spring(table, depth, load)}"
         )
     if not candidates:
         raise InputError(
@@ -171,6 +178,31 @@ def _column(table: Table, quantity: str, chosen: Mapping[str, str], taken: list[
             f'columns={{"{quantity}": …}}; there are {listed(dict(table.units)) or "no columns of numbers"}'
         )
     return candidates[0]
+
+
+_PRESSURES = ("Pa", "hPa", "kPa", "MPa", "GPa", "N/m^2", "N/mm^2", "N/cm^2", "bar", "mbar", "psi", "mmHg")
+
+_MOST_POINTS = 12
+"""Of a curve in a message."""
+
+
+def _as_spring(table: Table, depth: str, load: str) -> str:
+    """Points of a curve on its way in as they are typed; others where a unit is not stated."""
+    try:
+        to_m, to_n = (
+            _factor(table, quantity, name, _unit(table, name) or "")
+            for quantity, name in (("indentation", depth), ("force", load))
+        )
+    except InputError:
+        return '--positions "0, 1 mm, 2 mm" --forces "0, 0.1 N, 0.4 N"'
+    x, f = np.hstack([np.vstack(piece) for piece in table.read((depth, load))]) * [[to_m], [to_n]]
+    x, f = x[known := np.isfinite(x + f)], f[known]
+    x, f = x[deeper := np.diff(np.maximum.accumulate(x), prepend=-np.inf) > 0], f[deeper]
+    every = slice(None, None, -(-x.size // _MOST_POINTS) or 1)
+    positions, forces = (
+        ", ".join(shown(v, unit, 4) for v in of[every].tolist()) for of, unit in ((x, "m"), (f, "N"))
+    )
+    return f'--positions "{positions}" --forces "{forces}"'
 
 
 def _candidates(table: Table, quantity: str, names: list[str]) -> list[str]:
