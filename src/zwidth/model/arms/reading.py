@@ -59,9 +59,9 @@ def read_arm(
         Joints that stay at a value [rad; m], by name; one without damping is locked there. A map moves the
         first two of the others, and holds the rest in the middle of their ranges.
     damping, coulomb_friction, torque_limit
-        Of each joint [N·m·s/rad], [N·m], [N·m], or one number in a list for all of them; None: those of
-        the description. Damping may be a matrix, as of `Arm`, in the order of the description's joints.
-        Joints without damping that do not move the hand are left out.
+        Of each joint, or of each that moves the hand [N·m·s/rad], [N·m], [N·m], or one number in a list for
+        all; None: those of the description. Damping may be a matrix, as of `Arm`, in the order of the
+        description's joints. Joints without damping that do not move the hand are left out.
     resolution
         Encoder step of each joint [rad; m]; descriptions have none.
     pose
@@ -84,14 +84,17 @@ def read_arm(
     every, names, slides = model.coordinates, model.names, tuple(one.slides for one in model.coordinates)
     m, held = len(every), _values(every, hold or {}, "hold")
     own = [one.damping for one in every]
-    b = joint_damping(own if damping is None else _for_each(damping, m), names, slides)
-    if not np.any(b):
-        raise InputError(
-            f"{path.name} gives no joint any damping, and without damping no wall is passive; "
-            f"measure it and give damping, on the command line --joint-damping, or write {model.advice}"
-        )
+    undamped = InputError(
+        f"{path.name} gives no joint any damping, and without damping no wall is passive; "
+        f"measure it and give damping, on the command line --joint-damping, or write {model.advice}"
+    )
+    if damping is None and not any(own):
+        raise undamped
     frame = _last_frame(model, path.name) if frame is None else frame
-    way = model.moves(model.frame(frame, path.name))
+    way = sorted(set(model.moves(model.frame(frame, path.name))))
+    b = joint_damping(own if damping is None else _for_each(damping, way, m), names, slides)
+    if not np.any(b):
+        raise undamped
     bare = [i for i, of_joint in enumerate(as_matrix(b).diagonal()) if of_joint == 0]
     lacking = [i for i in bare if i in way and i not in held]
     if lacking and damping is None:
@@ -103,7 +106,7 @@ def read_arm(
     limits = efforts if len(efforts) == m else ()
 
     def each(given: Any, key: str) -> tuple[float, ...]:
-        numbers = joint_numbers(_for_each(given, m), key, names, slides)
+        numbers = joint_numbers(_for_each(given, way, m), key, names, slides)
         return tuple(numbers[i] for i in left) if numbers else ()
 
     given: dict[str, Any] = {
@@ -171,9 +174,9 @@ def _last_frame(model: Mechanism, name: str) -> str:
 
 def _before(model: Mechanism, ends: Mapping[int, list[Frame]]) -> str:
     """The last body before the branches, if a joint moves it."""
-    ways = [model.moves(frames[-1]) for frames in ends.values()]
-    shared = [one for one, *others in zip(*ways, strict=False) if all(other == one for other in others)]
-    frames = [one.name for one in model.frames if one.is_body and model.moves(one) == shared]
+    ways = [[*map(id, model.path(frames[-1]))] for frames in ends.values()]  # two fingers may be alike
+    shared = [one for one, *others in zip(*ways, strict=False) if {*others} == {one}]
+    frames = [each.name for each in model.frames if each.is_body and [*map(id, model.path(each))] == shared]
     return f", such as --frame {frames[-1]}, before the branches" if shared and frames else ""
 
 
@@ -196,10 +199,11 @@ def read_mechanism(path: Path) -> Mechanism:
     return found
 
 
-def _for_each(values: Any, count: int) -> Any:
-    """One number is that of every joint."""
-    alone = np.ndim(values) == 1 and len(values) == 1
-    return tuple(values) * count if alone else values
+def _for_each(values: Any, way: Sequence[int], count: int) -> Any:
+    """Of so many joints, from one number for each that moves the hand, or for all of those."""
+    if np.ndim(values) != 1 or len(values) not in (1, len(way)):
+        return values
+    return [values[way.index(i) % len(values)] if i in way else 0.0 for i in range(count)]
 
 
 def _source(model: Mechanism) -> str:
