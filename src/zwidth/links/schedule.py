@@ -72,6 +72,11 @@ class Schedule(Parametric):
             raise InputError(
                 f"loss must be below 1, got {float(self.loss):g}: a link that loses all joins nothing"
             )
+        if self.burst < 1 or (self.burst > 1 and not self.loss):
+            raise InputError(
+                f"burst must be ≥ 1, and 1 without a loss, got {float(self.burst):g} with a loss of "
+                f"{float(self.loss):g}: so many packets are lost in a row; give both, such as a loss of 0.1"
+            )
         if self.duplicates > 1:
             raise InputError(
                 f"duplicates is at most 1, got {float(self.duplicates):g}: it is the share that comes twice"

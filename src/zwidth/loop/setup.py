@@ -376,9 +376,10 @@ def _mass(device: Device, operator: Operator) -> float:
     if device.mass is None:
         if operator.kinematic:
             return 0.0
+        keys = "mass [kg]" if device.motion == "linear" else "inertia [kg*m^2], in Python mass"
         raise InputError(
             "mass is needed to simulate a motion and the device has none: the criteria do not depend on it, "
-            "what a hand feels does; give mass [kg], or prescribe the motion"
+            f"what a hand feels does; give {keys}, or prescribe the motion"
         )
     return float(device.exact("mass"))
 

@@ -84,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
         both=arguments.both,
     )
     if not gains.is_pair:
-        return _told(gains, arguments.json, save)
+        return _told(gains, arguments.json, save or arguments.joint)
     verdict = check_gains(
         gains,
         plant=arguments.plant,
@@ -202,10 +202,12 @@ def _of_one(
     return exit_status(pair.outcome)
 
 
-def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
+def _told(gains: ArmGains, as_json: bool, asked: Path | str | None) -> int:
     """Gains of a follower alone: what they are, and no verdict."""
-    if save is not None:
-        raise InputError("there is no law of both arms, so there is no verdict to save; --both makes one")
+    if asked is not None:
+        raise InputError(
+            f"there is no law of both arms, so there is no verdict for {asked}; --both makes one"
+        )
 
     def report() -> None:
         from zwidth.cli.pair.gains_report import print_follower

@@ -100,7 +100,7 @@ def print_follower(gains: ArmGains) -> None:
     """Print the gains of arms without a law of both."""
     parts = list(gains.report())
     with page() as out:
-        claim = "The leader feels nothing: these gains make no pair."
+        claim = "The leader feels nothing: these gains make no pair. --both asks of them on both sides."
         out.print(claimed("undecided", claim))
         section(out, str(parts[0]), [_set(part) for part in parts if isinstance(part, Table)])
         section(out, "what they are", items(gains.notes, "dim"))
