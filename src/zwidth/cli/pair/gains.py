@@ -38,8 +38,7 @@ OPTIONS = (
     },
     "arms: what no gain file says; said in the report where it is not given",
     {
-        "--plant FILE": "TOML with damping, coulomb_friction and resolution of the joints, or a published "
-        "name",
+        "--plant FILE": "TOML with damping, coulomb_friction, resolution of the joints, or a published name",
         "--rate 1/T": "of the references on the bus [Hz]",
         "--link-delay τ_link": "from one arm's reading to the other's controller, or each way [s]",
         "--link-delay-back τ_link": "from follower to leader, where it is another [s]",
@@ -63,10 +62,12 @@ _OF_TWO = "joint plot drive_rate bilateral_kp supply_voltage link_delay_back bot
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
     from zwidth.data.gains import check_gains, read_gains
+    from zwidth.data.gains.controllers import is_of_controllers
+    from zwidth.data.gains.file import read_table
 
-    plant = arguments.plant or ""
-    look_for([*arguments.files, *([plant] if plant.endswith(".toml") else [])])
-    if arguments.family is None and _of_controllers(arguments.files):
+    plant, (first, *others) = arguments.plant or "", arguments.files
+    look_for([first, *others, *([plant] if plant.endswith(".toml") else [])])
+    if arguments.family is None and not others and is_of_controllers(read_table(first)):
         return _held(arguments)
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if arguments.share is not None or arguments.stiffest or _is_yaml(save):
@@ -104,14 +105,6 @@ def run(arguments: argparse.Namespace) -> int:
 
     give_out(verdict, save, None, arguments.json, report)
     return exit_status(verdict.outcome)
-
-
-def _of_controllers(files: list[str]) -> bool:
-    """One file, with gains of ros2_control."""
-    from zwidth.data.gains.controllers import is_of_controllers
-    from zwidth.data.gains.file import read_table
-
-    return len(files) == 1 and is_of_controllers(read_table(files[0]))
 
 
 def _held(arguments: argparse.Namespace) -> int:
@@ -179,8 +172,7 @@ def _cartesian(controllers: Controllers, arguments: argparse.Namespace) -> int:
 
         print_cartesian(controllers, arguments.files[0])
 
-    document = {"outcome": "undecided", **controllers.to_dict()}
-    print_found(arguments.json, lambda: to_json(document), report)
+    print_found(arguments.json, lambda: to_json({"outcome": "undecided", **controllers.to_dict()}), report)
     return exit_status("undecided")
 
 

@@ -71,8 +71,7 @@ def _written(better: PassiveGains) -> Table:
 def print_cartesian(controllers: Controllers, path: str) -> None:
     """Print impedances at the end, and the command that decides them."""
     with page() as out:
-        claim = "An impedance at the end of the arm: it takes the arm to decide it."
-        out.print(claimed("undecided", claim))
+        out.print(claimed("undecided", "An impedance at the end of the arm: it takes the arm to decide it."))
         for one in controllers.cartesian:
             rows = [
                 [name, f"{k:g}", f"{d:.4g}"]
