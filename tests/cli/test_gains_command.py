@@ -58,10 +58,11 @@ def test_ideal_drives_and_bilateral_kp(run):
     assert [joint["leader"]["stiffness_N_m_per_rad"] for joint in told["joints"]] == ["8", "1"]
 
 
-def test_a_limp_leader_is_told_and_not_decided(run):
+def test_a_limp_leader_is_told_and_not_decided(run, refused):
     """3 without --both."""
     limp = "gains so.json --supply-voltage '7.4 V'"
-    run(limp, 3).says("The leader feels nothing", "8.899")
+    run(limp, 3).says("The leader feels nothing", "--both asks", "8.899")
+    assert "no verdict for elbow; --both makes one" in refused(f"{limp} --joint elbow")
     assert run(f"{limp} --json", 3).json["joints"][0]["leader"] is None
     run(f"{limp} --both")
 

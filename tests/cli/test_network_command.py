@@ -113,6 +113,10 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(run):
         (SCENE + NETWORK.replace('source = "haptic-paddle"', ""), "source is missing"),
         (SCENE + NETWORK + line("no", 1, 2), 'there is no line "no"'),
         (SCENE + NETWORK + line("paddle", 1, 2, "loss = 2"), "loss must be below 1"),
+        (
+            SCENE + NETWORK + line("paddle", 1, 2, "burst = 3"),
+            "burst must be ≥ 1, and 1 without a loss, got 3",
+        ),
         (SCENE + NETWORK + line("paddle", 1, 2, "los = 2"), 'did you mean "loss"'),
         (SCENE + NETWORK + line("paddle", 1, 2, 'impedance = "1 N*s/m"'), "is not cut"),
         (SCENE + NETWORK.partition("[[")[0] + '[network.part]\nname = "near"\n', "written as"),

@@ -104,3 +104,10 @@ def test_ways_to_join_two_arms_are_compared(run):
     assert list(told["schemes"]) == ["position–position", "position–force", "four channels"]
     for scores in told["schemes"].values():
         assert scores["felt_stiffness_N_per_m"] == pytest.approx(40, rel=0.1)
+
+
+def test_the_motion_of_two_hands_is_no_witness_of_one(run, refused):
+    """It is said what the file holds, and not that it holds nothing."""
+    run("pair arms.toml --stiffness 5000 -o active.json", 1)
+    message = refused("simulate arms.toml --operator witness --operator.file active.json")
+    assert "active.json holds a motion of two hands, one on each arm" in message

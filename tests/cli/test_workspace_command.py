@@ -305,10 +305,18 @@ def test_a_finger_without_damping_is_named_and_what_is_typed_works(run, refused,
     assert more or "left_joint locked at 0.1 m" in run(f"{line} {typed[0]}").words
     assert "no damping is left in left_joint" in refused(f"{line} --joint-damping 1,1,1,1,0")
     assert "pan_joint, lift_joint" in refused(f"{line} --joint-damping 1,1,1,1")
+    assert "arm, 4 joints" in run(f"{line} --frame wrist --joint-damping 1,1,1,1", status).words
+    one = run(f"{line} --frame wrist --joint-damping '1 N*m*s/rad' --joint-friction 0.1", status).words
+    assert "1 N·m·s/rad in each" in one
+    assert "left_joint" not in one
     run(f"{line} --joint-damping '1,1,1,1 N*m*s/rad,20 N*s/m'", status)
 
 
-def test_before_two_fingers_the_frame_is_named(run, refused):
-    Path("arm.urdf").write_text(gripper(2), encoding="utf-8")
+@pytest.mark.parametrize("mimic", ["", '<mimic joint="left_joint"/>'])
+def test_before_two_fingers_the_frame_is_named(run, refused, mimic):
+    """Also where one finger follows the other."""
+    text = gripper(2)
+    Path("arm.urdf").write_text(f"{mimic}</joint>".join(text.rsplit("</joint>", 1)), encoding="utf-8")
     message = refused("workspace arm.urdf --stiffness 100")
+    assert "such as --frame wrist, before" in message
     run(f"workspace arm.urdf --stiffness 100 {re.findall('--frame [a-z]+', message)[-1]}")

@@ -75,6 +75,7 @@ def test_needed_numbers_that_nobody_published(name, missing):
     with pytest.raises(zw.InputError) as caught:
         zw.catalogue.device(name)
     assert [option for option in ("--damping", "--rate") if option in str(caught.value)] == missing
+    assert f'zwidth links, in a file whose [device] has catalogue = "{name}"' in str(caught.value)
     given: dict[str, Any] = {"--damping": {"damping": "0.1 N*s/m"}, "--rate": {"rate": "1 kHz"}}
     arguments = {k: v for option in missing for k, v in given[option].items()}
     assert zw.catalogue.device(name, **arguments).exact("rate") == 1000

@@ -20,6 +20,7 @@ ARM = zw.Device(
     mass=0.01,
 )
 LATE = ARM.replace(delay="1.3 ms", mass=0.4)
+TURNS = zw.Device(damping=0.5, rate="1 kHz", motion="rotary")
 PAIR = zw.Pair(ARM, ARM, stiffness=20, delay="1 ms")
 
 
@@ -181,6 +182,7 @@ def test_a_trace_of_a_pair_comes_back_from_a_file(tmp_path, suffix):
     ("leader", "follower", "options", "message"),
     [
         (Finger(), None, {"pair": zw.Pair(ARM, ARM.replace(mass=None), stiffness=20)}, "mass is needed"),
+        (Finger(), None, {"pair": zw.Pair(TURNS, TURNS, stiffness=20)}, r"give inertia \[kg\*m\^2\]"),
         (None, zw.Wall(100), {}, "nothing moves"),
         (Finger(), 3, {}, "got int"),
         (Finger(), zw.Wall(100, -1), {}, "give out energy"),

@@ -236,7 +236,9 @@ def read_whole(document: object) -> Whole:
     else:
         statements = _statements(document, "", str(document.get("format", VERDICT)), told)
     if not any(statement.evidence for statement in statements):
-        raise Unreadable(_NONE)
+        said = str(document.get("outcome", ""))[:40]
+        without = f"no evidence found: it says {said!r}, and holds no proof or motion that is checked"
+        raise Unreadable(without if said and "format" in document else _NONE)
     return Whole(tuple(statements), tuple(told))
 
 

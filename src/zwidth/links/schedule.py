@@ -68,14 +68,19 @@ class Schedule(Parametric):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.loss >= 1:
-            raise InputError(
-                f"loss must be below 1, got {float(self.loss):g}: a link that loses all joins nothing"
-            )
-        if self.duplicates > 1:
-            raise InputError(
-                f"duplicates is at most 1, got {float(self.duplicates):g}: it is the share that comes twice"
-            )
+        alone = "so many packets are lost in a row; give both, such as a loss of 0.1"
+        for key, wrong, bound, why in (
+            ("loss", self.loss >= 1, "below 1", "a link that loses all joins nothing"),
+            (
+                "burst",
+                self.burst < 1 or (self.burst > 1 and not self.loss),
+                "≥ 1, and 1 without a loss",
+                alone,
+            ),
+            ("duplicates", self.duplicates > 1, "at most 1", "it is the share that comes twice"),
+        ):
+            if wrong:
+                raise InputError(f"{key} must be {bound}, got {float(getattr(self, key)):g}: {why}")
 
     def samples_late(self, period: Fraction) -> int:
         """Whole samples that the delay makes, rounded up: so late is a packet without jitter."""

@@ -381,7 +381,7 @@ def _mass(device: Device, operator: Operator) -> float:
             return 0.0
         raise InputError(
             "mass is needed to simulate a motion and the device has none: the criteria do not depend on it, "
-            f"what a hand feels does; give {_MASS[device.motion]}"
+            f"what a hand feels does; give {_MASS[device.motion]}, or prescribe the motion"
         )
     return float(device.exact("mass"))
 

@@ -156,8 +156,8 @@ def simulated(device: Any, environment: Any, operator: Any, duration: RealLike, 
 
 _OF_ONE = (
     {"initial_position": None, "initial_velocity": 0.0, "timing": None},
-    "a pair starts where its hands do, at rest, with a regular clock: leave out initial_position, "
-    "initial_velocity and timing",
+    "a pair starts where its hands do, at rest, with a regular clock: leave out initial position and "
+    "velocity, lateness and missed samples, in Python timing",
 )
 _OF_A_PAIR = (
     {"friction": None},

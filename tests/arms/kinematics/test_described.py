@@ -333,8 +333,10 @@ def test_what_cannot_be_read_is_said_in_one_line(tmp_path, urdf, capfd):
             (tmp_path / name).write_text(content, encoding="utf-8")
         with pytest.raises(zw.InputError, match=words):
             read_arm(tmp_path / name)
-    with pytest.raises(zw.InputError, match="no frame"):
-        read_arm(urdf, frame="hook")
+    with pytest.raises(zw.InputError, match=r'no frame .*did you mean "tip"'):
+        read_arm(urdf, frame="tipp")
+    with pytest.raises(zw.InputError, match="take a frame farther out"):
+        read_arm(urdf, frame="base")
     fingers = [
         _joint(f"to {side}", "tip", side, 0.01, extra=LIMIT.format(0.01)) for side in ("left", "right")
     ]

@@ -267,6 +267,7 @@ def nothing_is_passed_over() -> Iterator[tuple[str, object, str]]:
         ("a format alone", {"format": VERDICT}, no_key), ("a motion alone", {"witness": covering("active")},
          ""),
         ("a violation alone", {"violation": covering("active")}, ""),
+        ("undecided", {"format": "zwidth postures 1", "outcome": "undecided"}, "says 'undecided', and holds"),
         ("another format", {**true, "format": "zwidth verdict 2"},
          "document of format 'zwidth verdict 2' holds"),
         ("a format of no text", {**true, "format": 1}, "unreadable: no evidence found"),

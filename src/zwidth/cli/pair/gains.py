@@ -38,8 +38,7 @@ OPTIONS = (
     },
     "arms: what no gain file says; said in the report where it is not given",
     {
-        "--plant FILE": "TOML with damping, coulomb_friction and resolution of the joints, or a published "
-        "name",
+        "--plant FILE": "TOML with damping, coulomb_friction, resolution of the joints, or a published name",
         "--rate 1/T": "of the references on the bus [Hz]",
         "--link-delay τ_link": "from one arm's reading to the other's controller, or each way [s]",
         "--link-delay-back τ_link": "from follower to leader, where it is another [s]",
@@ -63,10 +62,12 @@ _OF_TWO = "joint plot drive_rate bilateral_kp supply_voltage link_delay_back bot
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
     from zwidth.data.gains import check_gains, read_gains
+    from zwidth.data.gains.controllers import is_of_controllers
+    from zwidth.data.gains.file import read_table
 
-    plant = arguments.plant or ""
-    look_for([*arguments.files, *([plant] if plant.endswith(".toml") else [])])
-    if arguments.family is None and _of_controllers(arguments.files):
+    plant, (first, *others) = arguments.plant or "", arguments.files
+    look_for([first, *others, *([plant] if plant.endswith(".toml") else [])])
+    if arguments.family is None and not others and is_of_controllers(read_table(first)):
         return _held(arguments)
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if arguments.share is not None or arguments.stiffest or _is_yaml(save):
@@ -84,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         both=arguments.both,
     )
     if not gains.is_pair:
-        return _told(gains, arguments.json, save)
+        return _told(gains, arguments.json, save or arguments.joint)
     verdict = check_gains(
         gains,
         plant=arguments.plant,
@@ -99,14 +100,6 @@ def run(arguments: argparse.Namespace) -> int:
     report = printed("pair.gains_report:print_gains", verdict, arguments.in_full)
     give_out(verdict, save, None, arguments.json, report)
     return exit_status(verdict.outcome)
-
-
-def _of_controllers(files: list[str]) -> bool:
-    """One file, with gains of ros2_control."""
-    from zwidth.data.gains.controllers import is_of_controllers
-    from zwidth.data.gains.file import read_table
-
-    return len(files) == 1 and is_of_controllers(read_table(files[0]))
 
 
 def _held(arguments: argparse.Namespace) -> int:
@@ -182,10 +175,12 @@ def _of_one(
     return exit_status(pair.outcome)
 
 
-def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
+def _told(gains: ArmGains, as_json: bool, asked: Path | str | None) -> int:
     """Gains of a follower alone: what they are, and no verdict."""
-    if save is not None:
-        raise InputError("there is no law of both arms, so there is no verdict to save; --both makes one")
+    if asked is not None:
+        raise InputError(
+            f"there is no law of both arms, so there is no verdict for {asked}; --both makes one"
+        )
     print_found(as_json, lambda: to_json(gains.to_dict()), printed("pair.gains_report:print_follower", gains))
     return exit_status("undecided")
 

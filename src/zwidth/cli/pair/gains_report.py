@@ -71,8 +71,7 @@ def _written(better: PassiveGains) -> Table:
 def print_cartesian(controllers: Controllers, path: str) -> None:
     """Print impedances at the end, and the command that decides them."""
     with page() as out:
-        claim = "An impedance at the end of the arm: it takes the arm to decide it."
-        out.print(claimed("undecided", claim))
+        out.print(claimed("undecided", "An impedance at the end of the arm: it takes the arm to decide it."))
         for one in controllers.cartesian:
             rows = [
                 [name, f"{k:g}", f"{d:.4g}"]
@@ -100,7 +99,7 @@ def print_follower(gains: ArmGains) -> None:
     """Print the gains of arms without a law of both."""
     parts = list(gains.report())
     with page() as out:
-        claim = "The leader feels nothing: these gains make no pair."
+        claim = "The leader feels nothing: these gains make no pair. --both asks of them on both sides."
         out.print(claimed("undecided", claim))
         section(out, str(parts[0]), [_set(part) for part in parts if isinstance(part, Table)])
         section(out, "what they are", items(gains.notes, "dim"))

@@ -98,18 +98,13 @@ def by_name(text: str | None, option: str) -> dict[str, str] | None:
 
 # The joints of `zwidth workspace`: by options, one value for all or one for each, or from a file.
 
-
 _JOINT_OPTIONS = (
     ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),
     ("--joint-friction", "coulomb_friction", "N*m", "Coulomb friction of the joints"),
     ("--joint-resolution", "resolution", "rad", "encoder step of the joints"),
     ("--torque-limit", "torque_limit", "N*m", "largest torque of the motors"),
 )
-
-
 _KEYS = tuple(key for _, key, _, _ in _JOINT_OPTIONS)
-
-
 JOINTS = {
     **{
         f"{option} VALUES": f"{meaning}, one value for all or one for each: 0.001,0.002 [{unit}]"

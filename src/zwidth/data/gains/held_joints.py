@@ -19,6 +19,7 @@ from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.result import evidence_of, least
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.wording import claim_of_passivity
 from zwidth.quantity.answered import answered, answers
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
@@ -43,6 +44,13 @@ class HeldJoint:
         left = self.verdict.margins.get("damping")
         return None if left is None else float(self.verdict.device.motor_side.exact("damping")) - left
 
+    @property
+    def claim(self) -> str:
+        """The verdict's; of a passive one no lower rate, at which a delay of one period would be longer."""
+        found = self.verdict
+        passive = found.outcome == "passive"
+        return f"{claim_of_passivity(found.scope, found.at_limit)}." if passive else found.claim
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
         return {
@@ -52,7 +60,7 @@ class HeldJoint:
             "integral_N_m_per_rad_s": float(self.law.integral),
             "damping_N_m_s_per_rad": float(self.law.damping),
             "outcome": self.verdict.outcome,
-            "claim": self.verdict.claim,
+            "claim": self.claim,
             "required_damping_N_m_s_per_rad": self.needed,
         }
 
@@ -77,7 +85,7 @@ class HeldJoints(Documented):
     @answers()
     def claim(self) -> str:
         """How many joints are what, and of the first of the worst what happens, how much and what to do."""
-        told = claim_of_joints(self.outcome, [(joint.law.name, joint.verdict) for joint in self.joints])
+        told = claim_of_joints(self.outcome, [(one.law.name, one.verdict, one.claim) for one in self.joints])
         if self.outcome == "passive":
             return told
         return f"{told} Gains that are proved are written by -o passive.yaml, in Python by passive_gains."
@@ -111,17 +119,17 @@ class HeldJoints(Documented):
         yield Lines(self.notes, "assumes")
 
 
-def claim_of_joints(outcome: Outcome, joints: Sequence[tuple[str, Verdict | PairVerdict]]) -> str:
+def claim_of_joints(outcome: Outcome, joints: Sequence[tuple[str, Verdict | PairVerdict, str]]) -> str:
     """How many are what, and the sentence of one: of those of this outcome the one that lacks most."""
-    found = [verdict.outcome for _, verdict in joints]
+    found = [verdict.outcome for _, verdict, _ in joints]
     counts = ", ".join(
         f"{found.count(one)} {one}" for one in (*_WORST[::-1], "passive")[::-1] if one in found
     )
-    name, worst = min(
-        ((name, verdict) for name, verdict in joints if verdict.outcome == outcome),
+    name, _, claim = min(
+        (one for one in joints if one[1].outcome == outcome),
         key=lambda one: -inf if one[1].margin is None else one[1].margin,
     )
-    return f"Of {len(found)} joints, each by itself: {counts}. {name}: {worst.claim}"
+    return f"Of {len(found)} joints, each by itself: {counts}. {name}: {claim}"
 
 
 def check_controllers(

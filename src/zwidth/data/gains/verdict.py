@@ -203,7 +203,7 @@ class GainsVerdict(Documented):
     @answers()
     def claim(self) -> str:
         """How many joints are what, and of the worst what happens, how much and what to do."""
-        return claim_of_joints(self.outcome, [(joint.name, joint.verdict) for joint in self.joints])
+        return claim_of_joints(self.outcome, [(one.name, one.verdict, one.claim) for one in self.joints])
 
     @property
     def margin(self) -> float | None:

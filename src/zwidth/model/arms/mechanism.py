@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.errors import InputError
+from zwidth.missing import suggestion
 
 Array = npt.NDArray[np.float64]
 Vector = tuple[float, ...]
@@ -135,8 +136,8 @@ class Mechanism:
         """The frame of a name; where a link and a joint share it, that of the link."""
         named = [frame for frame in self.frames if frame.name == name]
         if not named:
-            has = ", ".join(frame.name for frame in self.frames[:20])
-            raise InputError(f"{file} has no frame {name!r}; it has {has}")
+            known = suggestion(name, dict.fromkeys(frame.name for frame in self.frames))
+            raise InputError(f"{file} has no frame {name!r}; {known}")
         return max(named, key=lambda frame: frame.is_body)
 
     def moves(self, frame: Frame) -> list[int]:

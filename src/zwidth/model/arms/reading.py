@@ -1,6 +1,4 @@
-"""Arms by name and from robot descriptions.
-
-Reading robot descriptions: URDF and MJCF.
+"""Arms by name and from robot descriptions, URDF and MJCF.
 
 Viscous and Coulomb friction and the limits of motion and effort are those of the
 description where they are not given.
@@ -24,7 +22,7 @@ from zwidth.model.arms.described import MOST_MAPPED, DescribedArm, PosedArm
 from zwidth.model.arms.formats import read_mjcf, read_urdf
 from zwidth.model.arms.joints import as_matrix
 from zwidth.model.arms.legs import Leg, LeggedArm
-from zwidth.model.arms.mechanism import Coordinate, Frame, Mechanism, parsed
+from zwidth.model.arms.mechanism import Coordinate, Mechanism, parsed
 from zwidth.model.device.transmission import Transmission
 from zwidth.quantity.text import from_to, shown
 from zwidth.quantity.units import in_si
@@ -60,9 +58,9 @@ def read_arm(
         Joints that stay at a value [rad; m], by name; one without damping is locked there. A map moves the
         first two of the others, and holds the rest in the middle of their ranges.
     damping, coulomb_friction, torque_limit
-        Of each joint [N·m·s/rad], [N·m], [N·m], or one number in a list for all of them; None: those of
-        the description. Damping may be a matrix, as of `Arm`, in the order of the description's joints.
-        Joints without damping that do not move the hand are left out.
+        Of each joint, or of each that moves the hand [N·m·s/rad], [N·m], [N·m], or one number in a list for
+        all; None: those of the description. Damping may be a matrix, as of `Arm`, in the order of the
+        description's joints. Joints without damping that do not move the hand are left out.
     resolution
         Encoder step of each joint [rad; m]; descriptions have none.
     pose
@@ -85,14 +83,16 @@ def read_arm(
     every, names, slides = model.coordinates, model.names, tuple(one.slides for one in model.coordinates)
     m, held = len(every), _values(every, hold or {}, "hold")
     own = [one.damping for one in every]
-    b = joint_damping(own if damping is None else _for_each(damping, m), names, slides)
-    if not np.any(b):
+    if damping is None and not any(own):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
             f"measure it and give damping, on the command line --joint-damping, or write {model.advice}"
         )
     frame = _last_frame(model, path.name) if frame is None else frame
-    way = model.moves(model.frame(frame, path.name))
+    way = sorted(set(model.moves(model.frame(frame, path.name))))
+    if not way:
+        raise InputError(f"{path.name}: no joint moves {frame!r}: take a frame farther out")
+    b = joint_damping(own if damping is None else _for_each(damping, way, m), names, slides)
     bare = [i for i, of_joint in enumerate(as_matrix(b).diagonal()) if of_joint == 0]
     lacking = [i for i in bare if i in way and i not in held]
     if lacking and damping is None:
@@ -100,11 +100,11 @@ def read_arm(
     locked = {i: held.get(i, 0.0) for i in bare if i not in lacking}
     left = [i for i in range(m) if i not in locked]
     words = [f"{names[i]} locked at {shown(at, every[i].unit)}" for i, at in locked.items() if i in held]
+    source = [_source(model.locked(locked, ()))] if damping is None else []
     efforts = [one.effort for one in every if 0 < one.effort < np.inf]
-    limits = efforts if len(efforts) == m else ()
 
-    def each(given: Any, key: str) -> tuple[float, ...]:
-        numbers = joint_numbers(_for_each(given, m), key, names, slides)
+    def each(given: Any, key: str, own: Sequence[float] = ()) -> tuple[float, ...]:
+        numbers = joint_numbers(_for_each(own if given is None else given, way, m), key, names, slides)
         return tuple(numbers[i] for i in left) if numbers else ()
 
     given: dict[str, Any] = {
@@ -112,26 +112,20 @@ def read_arm(
         "frame": frame,
         "joint_range": _ranges([every[i] for i in left], [held.get(i) for i in left], whole),
         "damping": np.array(b)[np.ix_(left, left) if np.ndim(b) > 1 else left],
-        "coulomb_friction": each(
-            [one.friction for one in every] if coulomb_friction is None else coulomb_friction,
-            "coulomb_friction",
-        ),
+        "coulomb_friction": each(coulomb_friction, "coulomb_friction", [one.friction for one in every]),
         "resolution": each(resolution, "resolution"),
-        "torque_limit": each(limits if torque_limit is None else torque_limit, "torque_limit"),
+        "torque_limit": each(torque_limit, "torque_limit", efforts if len(efforts) == m else ()),
         "name": model.name,
         "transmission": (
             [transmission[i] for i in left]
             if isinstance(transmission, Sequence) and len(transmission) == m
             else transmission
         ),
-        "damping_source": "; ".join(
-            [*([_source(model.locked(locked, ()))] if damping is None else []), *model.springs]
-        ),
+        "damping_source": "; ".join([*source, *model.springs]),
     }
     if pose:
-        return PosedArm(
-            rest=None if rest is None else _rest(given["joint_range"], every, left, rest), **given
-        )
+        given["rest"] = None if rest is None else _rest(given["joint_range"], every, left, rest)
+        return PosedArm(**given)
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)
@@ -159,23 +153,19 @@ def _to_damp(model: Mechanism, way: Sequence[int], lacking: Sequence[int], held:
 
 
 def _last_frame(model: Mechanism, name: str) -> str:
-    """Of the only joint that bears no other: between several ends nothing is chosen."""
-    ends = set(range(len(model.joints))) - {joint.before for joint in model.joints}
-    borne = {end: [frame for frame in model.frames if frame.joint == end] for end in sorted(ends)}
-    if len(borne) > 1:
-        raise InputError(
-            f"{name} branches, and ends at {', '.join(each[-1].name for each in borne.values())}: at which "
-            f"frame is the hand? Say it with frame=…, on the command line --frame NAME{_before(model, borne)}"
-        )
-    return borne[ends.pop()][-1].name
-
-
-def _before(model: Mechanism, ends: Mapping[int, list[Frame]]) -> str:
-    """The last body before the branches, if a joint moves it."""
-    ways = [model.moves(frames[-1]) for frames in ends.values()]
-    shared = [one for one, *others in zip(*ways, strict=False) if all(other == one for other in others)]
-    frames = [one.name for one in model.frames if one.is_body and model.moves(one) == shared]
-    return f", such as --frame {frames[-1]}, before the branches" if shared and frames else ""
+    """Of the only joint that bears no other; between several ends the last body before them is advised."""
+    ends = sorted(set(range(len(model.joints))) - {joint.before for joint in model.joints})
+    last = [[frame for frame in model.frames if frame.joint == end][-1] for end in ends]
+    if len(last) == 1:
+        return last[0].name
+    ways = [[*map(id, model.path(frame))] for frame in last]  # two fingers may be alike
+    shared = [one for one, *others in zip(*ways, strict=False) if {*others} == {one}]
+    frames = [each.name for each in model.frames if each.is_body and [*map(id, model.path(each))] == shared]
+    before = f", such as --frame {frames[-1]}, before the branches" if shared and frames else ""
+    raise InputError(
+        f"{name} branches, and ends at {', '.join(each.name for each in last)}: at which frame is the hand? "
+        f"Say it with frame=…, on the command line --frame NAME{before}"
+    )
 
 
 def read_mechanism(path: Path) -> Mechanism:
@@ -197,10 +187,11 @@ def read_mechanism(path: Path) -> Mechanism:
     return found
 
 
-def _for_each(values: Any, count: int) -> Any:
-    """One number is that of every joint."""
-    alone = np.ndim(values) == 1 and len(values) == 1
-    return tuple(values) * count if alone else values
+def _for_each(values: Any, way: Sequence[int], count: int) -> Any:
+    """Of so many joints, from one number for each that moves the hand, or for all of those."""
+    if np.ndim(values) != 1 or len(values) not in (1, len(way)):
+        return values
+    return [values[way.index(i) % len(values)] if i in way else 0.0 for i in range(count)]
 
 
 def _source(model: Mechanism) -> str:
@@ -326,20 +317,9 @@ def built_in(name: str, *, damping: float | str | Damping, **numbers: Any) -> Ar
     return kind(**merged)
 
 
-def _hapkit() -> tuple[type[Arm], dict[str, Any]]:
-    return PlanarChain, {"links": (0.065659,), "joint_range": ((-pi / 4, pi / 4),)}
-
-
-def _two_link() -> tuple[type[Arm], dict[str, Any]]:
-    return PlanarChain, {"links": (0.1, 0.1), "joint_range": ((0.0, pi), (pi / 6, 5 * pi / 6))}
-
-
 def _haply() -> tuple[type[Arm], dict[str, Any]]:
     plane: dict[str, Any] = {"out": (1.0, 0.0), "up": (0.0, 1.0), "link": 0.07, "rod": 0.09}
-    legs = (
-        Leg(base=(-0.019, 0.0), bend=1, **plane),  # elbows outwards
-        Leg(base=(0.019, 0.0), bend=-1, **plane),
-    )
+    legs = tuple(Leg(base=(-0.019 * side, 0.0), bend=side, **plane) for side in (1, -1))  # elbows outwards
     return LeggedArm, {
         "legs": legs,
         "lower": (-0.05, 0.05),
@@ -366,5 +346,13 @@ def _falcon_leg(turn: float) -> Leg:
 
 
 BUILT_IN: Mapping[str, Callable[[], tuple[type[Arm], dict[str, Any]]]] = MappingProxyType(
-    {"hapkit": _hapkit, "two-link": _two_link, "haply-2diy": _haply, "falcon": _falcon}
+    {
+        "hapkit": lambda: (PlanarChain, {"links": (0.065659,), "joint_range": ((-pi / 4, pi / 4),)}),
+        "two-link": lambda: (
+            PlanarChain,
+            {"links": (0.1,) * 2, "joint_range": ((0, pi), (pi / 6, 5 * pi / 6))},
+        ),
+        "haply-2diy": _haply,
+        "falcon": _falcon,
+    }
 )

@@ -206,9 +206,9 @@ def _require(found: Entry, arguments: Mapping[str, Any]) -> None:
             f"no source gives the {' and the '.join(missing)} of {found.title}, and no verdict exists "
             f"without {'it' if len(missing) == 1 else 'them'}; measure and give "
             f"{', '.join(f'{k} [{found.unit(k)}]' for k in missing)}, "
-            f"for example {' '.join(examples[k] for k in missing)}; zwidth identify finds the damping in a "
-            "log of the handle moved by hand, and zwidth new device asks for one number after another"
-            f"{ranged}"
+            f"for example {' '.join(examples[k] for k in missing)}; of a command without these options, as "
+            f'zwidth pair and zwidth links, in a file whose [device] has catalogue = "{found.name}"; '
+            f"zwidth identify finds the damping in a log of the handle moved by hand{ranged}"
         )
 
 

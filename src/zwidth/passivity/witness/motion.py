@@ -199,6 +199,11 @@ def saved_motion(document: object, name: str) -> Motion:
         if isinstance(found, Mapping) and isinstance(found.get(key), Mapping):
             found = found[key]
     if not isinstance(found, Mapping) or found.get("kind") not in KINDS:
+        if isinstance(found, Mapping) and found.get("kind") == "pair motion":
+            raise InputError(
+                f"{name} holds a motion of two hands, one on each arm, and a witness is one hand: in Python "
+                "zwidth.operators.WitnessMotion(verdict.witness.leader)"
+            )
         raise InputError(
             f"{name} holds no motion that takes energy out: save one with zwidth check … -o FILE, of a loop "
             "that is active, or with zwidth limit"

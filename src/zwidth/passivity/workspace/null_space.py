@@ -325,7 +325,7 @@ def _has_null_space(arm: Arm, spring: NullSpaceSpring) -> None:
     if not spring.regularization and np.linalg.matrix_rank(jacobian) < size:
         raise InputError(
             "the null-space spring rests in a singular position, where the pseudo-inverse jumps; give "
-            "another null-space rest, or the controller's regularization"
+            "another rest, --null-rest, or the controller's --regularization (in Python rest, regularization)"
         )
 
 
