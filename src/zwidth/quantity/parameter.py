@@ -16,7 +16,7 @@ from dataclasses import MISSING, field, fields
 from fractions import Fraction
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, TypeVar
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike
@@ -112,9 +112,15 @@ class Parameter(NamedTuple):
 class Parametric:
     """A frozen data class that reads its fields when it is made."""
 
+    given_for: ClassVar[tuple[str, str] | None] = None
+    """A parameter whose text had the unit of one motion alone, and which: "stiffness", "linear" for 3 N/m."""
+
     def __post_init__(self) -> None:
         for name, read in _fields(type(self))[1]:  # type: ignore[arg-type]  # a class has a hash
-            object.__setattr__(self, name, read(getattr(self, name), name))
+            given = getattr(self, name)
+            object.__setattr__(self, name, read(given, name))
+            if isinstance(given, (str, list, tuple)) and (motion := _motion_of(given, type(self), name)):
+                object.__setattr__(self, "given_for", (name, motion))
 
     def with_unit(self, name: str, motion: str = "linear") -> str:
         """A number with its unit as a line shows it, "0.3 N·s/m"; "" where it was not given."""
@@ -137,6 +143,24 @@ class Parametric:
         own = self.__dict__
         copy.__dict__.update({name: own[name] for name in kind.__dataclass_fields__} | read)  # type: ignore[attr-defined]
         return copy
+
+
+def _motion_of(given: Any, kind: type, name: str) -> str:
+    """The motion whose unit a text, or the first in a list, has and the other has not; "" where none."""
+    text = next((one for one in ([given] if isinstance(given, str) else given) if isinstance(one, str)), None)
+    quantity = parameters_of(kind)[name].quantity
+    if text is None or quantity.unit == quantity.rotary_unit:
+        return ""
+    fits = [motion for motion in ("linear", "rotary") if _has_unit(text, quantity.unit_for(motion))]
+    return fits[0] if len(fits) == 1 else ""
+
+
+def _has_unit(text: str, unit: str) -> bool:
+    try:
+        parse(text, unit, "it")
+    except InputError:
+        return False
+    return True
 
 
 def parameters_of(kind: type[Any]) -> Mapping[str, Parameter]:

@@ -25,7 +25,7 @@ from zwidth.model.environment.discretization import (
 from zwidth.model.environment.environment import Box, Environment, RationalFunction, polynomial_text
 from zwidth.model.environment.system import LinearSystem, is_system, read_system
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.parameter import CertainOrNone, Reads, exact, part
+from zwidth.quantity.parameter import CertainOrNone, Reads, exact, parameters_of, part
 from zwidth.quantity.text import shown
 
 _SAME_PERIOD = Fraction(1, 10**9)
@@ -181,7 +181,9 @@ class ContinuousTransferFunction(_Ratio):
         return f"H(s) = {self._in('s')}, discretization {self.discretization}"
 
 
-def as_environment(thing: object, discretization: Discretization | None = None) -> Environment:
+def as_environment(
+    thing: object, discretization: Discretization | None = None, motion: str = ""
+) -> Environment:
     """An environment from anything that has an H.
 
     Parameters
@@ -191,9 +193,16 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
         scipy.signal or harold.
     discretization
         For a continuous system, and for it alone.
+    motion
+        Of the device that meets it; an environment that was given in units of the other one is refused.
     """
     if isinstance(thing, Environment):
         _refuse(discretization, "an environment has its own H(z)")
+        if motion and thing.met.given_for is not None and thing.met.given_for[1] != motion:
+            name, other = thing.met.given_for
+            has, wants = (parameters_of(type(thing.met))[name].unit_for(of) for of in (other, motion))
+            moves = {"linear": "slides", "rotary": "turns"}[motion]
+            raise InputError(f"{name} is given in {has}, and the device {moves}: give it in {wants}")
         return thing
     if not is_system(thing):
         raise InputError(

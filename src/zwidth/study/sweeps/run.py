@@ -102,7 +102,11 @@ def sweep(
         options["duration"] = float(parse_number(duration, "s", "duration"))
     if of == "limit":
         options.setdefault("parameter", "stiffness")
-    law = environment if environment is None or isinstance(device, Pair) else as_environment(environment)
+    law = (
+        environment
+        if environment is None or isinstance(device, Pair)
+        else as_environment(environment, motion=device.motion)
+    )
     asked = request(of, Loop(device, law, operator, options), vary)
     file = None if path is None else _place(Path(path))
 
