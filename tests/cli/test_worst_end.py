@@ -42,3 +42,13 @@ def test_the_limit_is_that_of_the_worst_end(run):
     device = zw.Device(damping=0.2, sample_period=0.001, mass=(1, 2))
     loop = Specification(device, zw.Wall(stiffness=100))
     assert of_one_value(loop) is loop
+
+
+def test_a_stated_range_of_the_catalogue_has_a_worst_end(run):
+    """A limit of a wheel of which little is published needs no number of its own."""
+    line = "limit moza-r9 --stiffness '0.05 N*m/rad'"
+    worst = "--damping 0.005 --coulomb-friction 0.02 --resolution '287.7 urad' --delay '2 ms'"
+    told, given = run(f"{line} --json"), run(f"{line} {worst} --json")
+    assert "the worst end is taken" in told.err.replace("\n", " ")
+    key = "proved_passive_N_m_per_rad"
+    assert told.json[key] == pytest.approx(given.json[key], rel=1e-3)

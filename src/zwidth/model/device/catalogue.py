@@ -197,11 +197,8 @@ def _require(found: Entry, arguments: Mapping[str, Any]) -> None:
     if missing:
         unit = found.unit("damping")
         examples = {"damping": f'--damping "0.1 {unit}"', "rate": '--rate "1 kHz"'}
-        ranged = (
-            f"; zwidth check {found.name} answers for a stated range of what is unknown"
-            if all(key in found.ranges for key in missing)
-            else ""
-        )
+        answers = f"; zwidth check {found.name} answers for a stated range of what is unknown"
+        ranged = answers if all(key in found.ranges for key in missing) else ""
         raise InputError(
             f"no source gives the {' and the '.join(missing)} of {found.title}, and no verdict exists "
             f"without {'it' if len(missing) == 1 else 'them'}; measure and give "
