@@ -68,7 +68,7 @@ def quantities(value: object, unit: str, key: str) -> list[Exact]:
         raise InputError(f"{key} is a list of numbers, such as {key} = [0, 0.01]")
     numbers = [parse_number(v, unit, f"{key}[{i}]") for i, v in enumerate(value)]
     units = [str(v).lstrip("+-0123456789.eE ") for v in value]
-    others = [its for its in units if its and parse_number(f"1 {its}", unit, key) != 1]
+    others = [its for its in units if its and its[0] != "/" and parse_number(f"1 {its}", unit, key) != 1]
     for own, number, its in zip(value, numbers, units, strict=True):
         if isinstance(own, str) and number and others and not its:  # 10 in "0, 10, 20 deg" would be rad
             raise InputError(f'{key}: {own} has no unit; write "{own} {others[0]}", or "{own} {unit}"')
@@ -85,9 +85,7 @@ def branches(value: object, motion: str) -> list[tuple[Exact | Interval, Exact |
             'on the command line "800:3, 200:20"'
         )
     spring, dashpot = (GLOSSARY[f"branch_{key}"].unit_for(motion) for key in ("stiffness", "damping"))
-    return [
-        (parse(mu, spring, "branch stiffness"), parse(eta, dashpot, "branch damping")) for mu, eta in value
-    ]
+    return [(parse(k, spring, "branch stiffness"), parse(b, dashpot, "branch damping")) for k, b in value]
 
 
 def flag(value: object, key: str) -> bool:
