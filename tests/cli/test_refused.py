@@ -33,7 +33,7 @@ REFUSED = {
         "check haptic-paddle": "no environment",
         # --damping is the device's: what a Maxwell solid lacks is --virtual-damping
         "check haptic-paddle --type maxwell --stiffness 300": "needs --virtual-damping [N*s/m]",
-        "limit excalibur --stiffness 3": ("damping", "zwidth check excalibur answers"),
+        "simulate excalibur --stiffness 3 --operator dowel": ("damping", "zwidth check excalibur answers"),
         "check": "no device",
         "devices phanton": "phantom",
         "devices phantom falcon": "too many",
