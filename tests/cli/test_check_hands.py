@@ -83,6 +83,7 @@ def test_proofs_of_an_active_hand_are_saved_and_verified(run):
     [
         (f"{OF_A_WHEEL} --hands dowel", '"dowel"'),
         (f"{OF_A_WHEEL} --hands none --mass 1", "inertia"),
+        ("check moza-r9 --stiffness 1 --hands none", "give it"),
         ("check haptic-paddle --stiffness 100 --active-below '700 Hz'", "half the rate"),
         ("check haptic-paddle --stiffness 100 --active-below soon", "--active-below"),
         ("check haptic-paddle --stiffness 100 --active-below '10 m'", "--active-below"),

@@ -153,7 +153,9 @@ def test_the_converter_is_counted_in(run, refused):
     found = run(f"{coarse} {hand} --json").json
     assert found["proved_active_N"] < 0.025 <= found["proved_passive_N"]
     assert any("the converter steps are counted in" in line for line in found["assumptions"])
-    assert "no force_resolution" in refused(f"limit novint-falcon --damping 0.1 {hand}")
+    assert "no force_resolution" in refused(
+        f"limit --damping 0.1 --rate 1000 --coulomb-friction 0.1 --resolution '20 um' {hand}"
+    )
 
 
 def test_a_contact(run):
@@ -176,14 +178,16 @@ def test_a_spring_given_by_points_has_a_gain(run):
     result = run("limit haptic-paddle detent.toml --parameter gain --tolerance 0.1", None)
     assert result.status in (0, 3)
     assert "gain" in result.out
+    assert "proved nonlinear spring, 5 points" in result.words  # the forces to write: a gain is no option
 
 
-def test_an_environment_without_a_stiffness_asks_which_limit(refused):
+@pytest.mark.parametrize("more", ["", "--parameter stiffness"])
+def test_an_environment_without_a_stiffness_asks_which_limit(refused, more):
     Path("stop.toml").write_text(
         '[environment]\ntype = "nonlinear-spring"\npositions = [0, "1 cm"]\nforces = [0, "4 N"]\n',
         encoding="utf-8",
     )
-    error = refused("limit haptic-paddle stop.toml --coulomb-friction 0.1")
+    error = refused(f"limit haptic-paddle stop.toml --coulomb-friction 0.1 {more}")
     assert all(part in error for part in ("--parameter", "gain", "rate"))
 
 

@@ -66,3 +66,13 @@ def test_a_law_that_is_decided_for_one_delay(command, run):
     contact = "touch --type hunt-crossley --stiffness 10 --exponent 1 --dissipation 0"
     found = run(f"{command} {contact}", None)
     assert "for one value is needed: delay 1 ms" in " ".join(found.err.split())
+
+
+def test_a_stated_range_of_the_catalogue_has_a_worst_end(run):
+    """A limit of a wheel of which little is published needs no number of its own."""
+    line = "limit moza-r9 --stiffness '0.05 N*m/rad'"
+    worst = "--damping 0.005 --coulomb-friction 0.02 --resolution '287.7 urad' --delay '2 ms'"
+    told, given = run(f"{line} --json"), run(f"{line} {worst} --json")
+    assert "the worst end is taken" in told.err.replace("\n", " ")
+    key = "proved_passive_N_m_per_rad"
+    assert told.json[key] == pytest.approx(given.json[key], rel=1e-3)

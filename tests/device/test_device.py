@@ -89,6 +89,8 @@ def test_mass_may_be_unknown():
     assert "mass" not in device.parameters()
     with pytest.raises(zw.InputError, match="mass has no single value"):
         device.exact("mass")
+    with pytest.raises(zw.InputError, match="delay has no single value, it is the interval 1 … 2 ms"):
+        device.replace(delay="1 .. 2 ms").exact("delay")
 
 
 @given(devices())

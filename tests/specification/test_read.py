@@ -233,6 +233,10 @@ def test_lists_on_the_command_line(read):
     points = {"positions": "-1 mm, 0, 2 mm", "forces": "[-1, 0, 0.5 N]"}
     s = load(["phantom"], {"type": "nonlinear-spring", **points})
     assert s.environment == zw.NonlinearSpring([-0.001, 0, 0.002], [-1, 0, 0.5])
+    with pytest.raises(zw.InputError, match='positions: 10 has no unit; write "10 mm", or "10 m"'):
+        load(["phantom"], {"type": "nonlinear-spring", "positions": "0, 10, 20 mm", "forces": "0, 1, 2"})
+    ratio = {"type": "nonlinear-spring", "positions": "0, 1/3, 2", "forces": "0, 1, 2"}
+    assert load(["phantom"], ratio).environment == zw.NonlinearSpring([0, Fraction(1, 3), 2], [0, 1, 2])
     contact = {"type": "hunt-crossley", "stiffness": "2e4", "dissipation": "3 s/m"}
     assert load(["phantom"], contact).environment == zw.HuntCrossley(20000, "1.5", 3)
     s = load(["phantom"], {"type": "generalized-maxwell", "stiffness": "1", "branches": "800:3, 1 N/mm : 20"})

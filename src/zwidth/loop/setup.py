@@ -26,7 +26,7 @@ from zwidth.model.operator.operator import Operator, Signals
 from zwidth.model.rendering.rendered import laws_of
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import read_number
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import in_words, shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -379,8 +379,9 @@ def _mass(device: Device, operator: Operator) -> float:
     if device.mass is None:
         if operator.kinematic:
             return 0.0
+        mass = in_words("mass", device.motion)
         raise InputError(
-            "mass is needed to simulate a motion and the device has none: the criteria do not depend on it, "
+            f"{mass} is needed to simulate a motion and the device has none: no criterion depends on it, "
             f"what a hand feels does; give {_MASS[device.motion]}, or prescribe the motion"
         )
     return float(device.exact("mass"))

@@ -29,7 +29,7 @@ from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.documented import Documented
-from zwidth.quantity.text import shown, told_quantity
+from zwidth.quantity.text import in_words, shown, told_quantity
 from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
@@ -167,7 +167,8 @@ def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> FiniteStiffnessRe
             "and by hands of your choice"
         )
     if verdict.device.mass is None:
-        raise InputError("mass is needed to replay a motion by a real hand, and the device has none")
+        own = in_words("mass", verdict.device.motion)
+        raise InputError(f"{own} is needed to replay a motion by a real hand, and the device has none")
     if not 0 < damping_ratio < float("inf"):
         raise InputError(f"damping_ratio must be > 0, got {damping_ratio}: a hand without damping rings on")
     motion, rounds = _shortened(verdict.witness.motion)

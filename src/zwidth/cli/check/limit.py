@@ -61,10 +61,10 @@ def run(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if _has_no_wall(arguments):
         setattr(arguments, dest_of("stiffness"), "0")  # what is sought: the search begins at 2b/T
-    loop = of_one_value(asked(arguments).loop)
-    if arguments.parameter is None:
-        _refuse_without_stiffness(loop)
+    loop = of_one_value(asked(arguments, in_range=True).loop)
     parameter = named(arguments.parameter or "stiffness")
+    if parameter == "environment.stiffness":
+        _refuse_without_stiffness(loop)
     options = _options(arguments, loop.device.motion)
     from zwidth.show.with_bar import passive_limit
 
@@ -103,11 +103,10 @@ def _refuse_without_stiffness(loop: Specification) -> None:
     ]
     if met.scaled(Fraction(1)) is not None:
         numbers.insert(0, "gain, a factor on its force")
-    own = "; ".join(numbers)
-    known = ", ".join(key.replace("_", "-") for key in _ON_DEVICE)
+    numbers.append(f"or of the device {', '.join(key.replace('_', '-') for key in _ON_DEVICE)}")
     raise InputError(
         "this environment has no single stiffness, so say with --parameter which limit is wanted: "
-        f"{own + '; ' if own else ''}or of the device {known}"
+        + "; ".join(numbers)
     )
 
 
@@ -133,10 +132,8 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
         "force_resolution": arguments.count_force_resolution,
         "contact": contact(arguments),
     }
-    for name, unit in units.items():
-        typed = getattr(arguments, name)
-        if typed is not None:
-            options[name] = parse_number(typed, unit, name)
+    typed = {name: text for name in units if (text := getattr(arguments, name)) is not None}
+    options |= {name: parse_number(text, units[name], name) for name, text in typed.items()}
     for name in ("effort", "seconds"):
         if options.get(name, 1) <= 0:
             raise InputError(f"{name} must be > 0, got {getattr(arguments, name)}: the search takes some")

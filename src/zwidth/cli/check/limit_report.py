@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rich.padding import Padding
@@ -90,9 +91,12 @@ def _loop(bracket: Bracket, loop: Specification) -> list[Row]:
     law, proved = loop.environment, bracket.proved_passive
     if getattr(law.met, "stiffness", None) == 0 and bracket.parameter == "environment.stiffness" and proved:
         law = law.around(law.met.replace(stiffness=proved))  # that of a wall of which none was given
+    of, scaled = "environment", law.met.scaled(Fraction(proved or 0))
+    if bracket.parameter.endswith("gain") and proved and scaled is not None:
+        of, law = "proved", law.around(scaled)  # a gain is no option: these are the forces to write
     return [
         ("device", device_line(loop.device)),
-        ("environment", environment_line(law, loop.device.motion)),
+        (of, environment_line(law, loop.device.motion)),
         ("hand", bracket.hand),
         ("decided", f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"),
         *_cut(bracket),
@@ -139,6 +143,4 @@ def _name(bracket: Bracket) -> str:
     """The parameter as people say it; damping is the device's, virtual damping the environment's."""
     owner, _, key = bracket.parameter.partition(".")
     name = "virtual_damping" if (owner, key) == ("environment", "damping") else key
-    if owner == "transmission":
-        name = f"{owner} {key}"
-    return in_words(name)
+    return in_words(f"{owner} {key}" if owner == "transmission" else name)

@@ -48,10 +48,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     port = _port(arguments.port)
     need_libraries()
-    from zwidth.show.explorer.serving import serve_explorer
     from zwidth.show.explorer.starts import from_sources
 
     state = from_sources(arguments.sources, overrides(arguments), arguments.law)
+    from zwidth.show.explorer.serving import serve_explorer  # seconds: after what was typed was read
+
     given = {"address": arguments.address or HOST, "token": arguments.token}
     try:
         page = serve_explorer(state, USUAL_PORT if port is None else port, **given)

@@ -195,13 +195,9 @@ def _require(found: Entry, arguments: Mapping[str, Any]) -> None:
     if arguments.get("rate") is None and arguments.get("sample_period") is None:
         missing.append("rate")
     if missing:
-        unit = found.unit("damping")
-        examples = {"damping": f'--damping "0.1 {unit}"', "rate": '--rate "1 kHz"'}
-        ranged = (
-            f"; zwidth check {found.name} answers for a stated range of what is unknown"
-            if all(key in found.ranges for key in missing)
-            else ""
-        )
+        examples = {"damping": f'--damping "0.1 {found.unit("damping")}"', "rate": '--rate "1 kHz"'}
+        answers = f"; zwidth check {found.name} answers for a stated range of what is unknown"
+        ranged = answers if all(key in found.ranges for key in missing) else ""
         raise InputError(
             f"no source gives the {' and the '.join(missing)} of {found.title}, and no verdict exists "
             f"without {'it' if len(missing) == 1 else 'them'}; measure and give "

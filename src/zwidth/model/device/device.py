@@ -235,7 +235,7 @@ class Device(Parametric):
             require_rigid(self, f"what asks for one {in_words(key)}")
         value = getattr(self, key)
         if not isinstance(value, Exact):
-            given = "it is unknown" if value is None else f"it is the interval {value}"
+            given = "it is unknown" if value is None else f"it is the interval {shown(value, self.unit(key))}"
             raise InputError(f"{key} has no single value, {given}; give one, of an interval each end in turn")
         return value.fraction
 

@@ -66,7 +66,13 @@ def quantities(value: object, unit: str, key: str) -> list[Exact]:
         value = [part.strip() for part in _without_decimal_commas(value, key).split(",")]
     if not isinstance(value, list):
         raise InputError(f"{key} is a list of numbers, such as {key} = [0, 0.01]")
-    return [parse_number(v, unit, f"{key}[{i}]") for i, v in enumerate(value)]
+    numbers = [parse_number(v, unit, f"{key}[{i}]") for i, v in enumerate(value)]
+    units = [str(v).lstrip("+-0123456789.eE ") for v in value]
+    others = [its for its in units if its and its[0] != "/" and parse_number(f"1 {its}", unit, key) != 1]
+    for own, number, its in zip(value, numbers, units, strict=True):
+        if isinstance(own, str) and number and others and not its:  # 10 in "0, 10, 20 deg" would be rad
+            raise InputError(f'{key}: {own} has no unit; write "{own} {others[0]}", or "{own} {unit}"')
+    return numbers
 
 
 def _without_decimal_commas(text: str, key: str) -> str:
@@ -90,14 +96,8 @@ def branches(value: object, motion: str) -> list[tuple[Exact | Interval, Exact |
             "branches is a list of pairs of stiffness and damping, such as branches = [[800, 3], [200, 20]]; "
             'on the command line "800:3, 200:20"'
         )
-    spring, dashpot = GLOSSARY["branch_stiffness"], GLOSSARY["branch_damping"]
-    return [
-        (
-            parse(mu, spring.unit_for(motion), "branch stiffness"),
-            parse(eta, dashpot.unit_for(motion), "branch damping"),
-        )
-        for mu, eta in value
-    ]
+    spring, dashpot = (GLOSSARY[f"branch_{key}"].unit_for(motion) for key in ("stiffness", "damping"))
+    return [(parse(k, spring, "branch stiffness"), parse(b, dashpot, "branch damping")) for k, b in value]
 
 
 def flag(value: object, key: str) -> bool:
@@ -120,12 +120,10 @@ def as_text(value: object, key: str) -> str:
 
 FILTERS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "backward-difference": (),
-        "window": ("samples",),
-        "one-pole": ("time_constant", "cutoff"),
+        "backward-difference": (), "window": ("samples",), "one-pole": ("time_constant", "cutoff"),
         "filter": ("numerator", "denominator"),
     }
-)
+)  # fmt: skip
 """The types of velocity filter and their keys."""
 
 

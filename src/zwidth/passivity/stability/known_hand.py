@@ -40,7 +40,7 @@ from zwidth.quantity.answered import answered, known
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import exact_text, shown
+from zwidth.quantity.text import exact_text, in_words, shown
 
 _HALVINGS = 8
 """Of the stiffness, in that search."""
@@ -174,8 +174,9 @@ def motion_of(device: Device, hand: HandImpedance) -> Motion:
     """Device and hand together."""
     require_rigid(device, "stability with a known hand")
     if device.mass is None:
+        own = f"{in_words('mass', device.motion)} [{device.unit('mass')}]"
         raise InputError(
-            "stability with a known hand depends on the mass of the device, and it is unknown; give mass"
+            f"stability with a known hand depends on the device's {own}, which is unknown: give it"
         )
     mass, damping = (
         (low + more, high + most)

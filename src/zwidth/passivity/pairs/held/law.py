@@ -27,6 +27,7 @@ from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.stability.known_hand import motion_of
 from zwidth.quantity import balls
 from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.text import in_words
 
 ArmName = Literal["leader", "follower"]
 
@@ -66,8 +67,9 @@ class HeldPair:
         """What moves there, arm and hand together."""
         device = getattr(self.pair, self.held)
         if device.mass is None:
+            own = in_words("mass", device.motion)
             raise InputError(
-                f"how the {self.held} moves in a hand depends on its mass, and that is unknown; give mass"
+                f"how the {self.held} moves in a hand depends on its {own}, which is unknown: give it"
             )
         delay = self.arms[1].side.delay
         return motion_of(device, self.hand)._replace(period=self.pair.sample_period, delay=delay)
