@@ -81,7 +81,8 @@ def device_of_one_value(device: Device, of: Container[str] = WORST) -> Device:
     if not taken:
         return device
     told = ", ".join(f"{in_words(key)} {shown(value, device.unit(key))}" for key, value in taken.items())
-    print_message(f"of an interval the worst end is taken, for one value is needed: {told}")
+    doubt = "; between whole samples a shorter delay may be worse" if "delay" in taken else ""
+    print_message(f"of an interval the worst end is taken, for one value is needed: {told}{doubt}")
     return device.replace(**taken)
 
 

@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if _has_no_wall(arguments):
         setattr(arguments, dest_of("stiffness"), "0")  # what is sought: the search begins at 2b/T
-    loop = of_one_value(asked(arguments, in_range=True).loop)
+    loop = of_one_value(asked(arguments).loop)
     parameter = named(arguments.parameter or "stiffness")
     if parameter == "environment.stiffness":
         _refuse_without_stiffness(loop)

@@ -73,7 +73,7 @@ def _loops(arguments: argparse.Namespace) -> list[Played]:
 
     if not (arguments.sources or overrides(arguments) or arguments.law):
         return presets()
-    loop = of_one_value(asked(arguments, in_range=True).loop)
+    loop = of_one_value(asked(arguments).loop)
     return [
         played(loop.device, loop.environment, decide=lambda device, law: decided(Specification(device, law)))
     ]
