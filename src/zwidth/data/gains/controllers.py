@@ -33,6 +33,7 @@ from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
 from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.specification.table import quoted
+from zwidth.quantity.answered import answered, data_of
 from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Shown, Table
 
@@ -82,15 +83,14 @@ class _OtherLaw(InputError):
 
 @dataclass(frozen=True)
 class JointLaw:
-    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand. `keys` leads to the
-    table of its controller, and `form` is how it has them: "gains" or "joints" below the joint's name,
-    "k_gains" in a list for all joints, "pid" of its one joint."""
+    """The law of one joint. `keys` leads to the table of its controller, and `form` is how it has the gains:
+    "gains" or "joints" below the joint's name, "k_gains" in a list for all joints, "pid" of its one joint."""
 
-    name: str
-    stiffness: Fraction
-    integral: Fraction
-    damping: Fraction
-    source: str
+    name: str = answered("of the joint")
+    stiffness: Fraction = answered("p", unit="N*m/rad")
+    integral: Fraction = answered("i [N·m/(rad·s)]", key="integral_N_m_per_rad_s")
+    damping: Fraction = answered("d", unit="N*m*s/rad")
+    source: str = answered("where they stand")
     keys: tuple[str, ...] = ()
     form: str = "gains"
 
@@ -185,16 +185,7 @@ class Controllers(Shown):
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
         return {
-            "joints": [
-                {
-                    "name": joint.name,
-                    "stiffness_N_m_per_rad": float(joint.stiffness),
-                    "integral_N_m_per_rad_s": float(joint.integral),
-                    "damping_N_m_s_per_rad": float(joint.damping),
-                    "source": joint.source,
-                }
-                for joint in self.joints
-            ],
+            "joints": [data_of(joint) for joint in self.joints],
             "cartesian": [
                 {
                     "stiffness_N_per_m": list(one.stiffness[:3]),
