@@ -37,14 +37,14 @@ from zwidth.quantity.answered import answered, data_of
 from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Shown, Table
 
-_AXES = ("x", "y", "z")
+AXES = ("x", "y", "z")
 _OF_JOINT = ("N·m/rad", "N·m/(rad·s)", "N·m·s/rad")
 _MANAGER = ("controller_manager", "ros__parameters")
-_MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in _AXES)
+_MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in AXES)
 _OF_ADMITTANCE = ("stiffness", "pd_gains", "pid_gains")
 """Tables with keys for such motions are of FZI's cartesian_controllers: positions are commanded, no force."""
 
-_OF_TASK = {"N/m": [f"pos_{axis}" for axis in _AXES], "N*m/rad": [f"rot_{axis}" for axis in _AXES]}
+_OF_TASK = {"N/m": [f"pos_{axis}" for axis in AXES], "N*m/rad": [f"rot_{axis}" for axis in AXES]}
 """Of CRISP, what it calls motions, by the unit of their springs."""
 
 _MOST_KP, _MOST_KD = Fraction(500), Fraction(5)
@@ -178,7 +178,7 @@ class Controllers(Shown):
             yield _gains(heads, numbers)
         for one in self.cartesian:
             rows = (("stiffness [N/m, N·m/rad]", one.stiffness), ("damping [N·s/m, N·m·s/rad]", one.damping))
-            yield _gains((("at the end", *_AXES, *(f"about {axis}" for axis in _AXES)),), rows)
+            yield _gains((("at the end", *AXES, *(f"about {axis}" for axis in AXES)),), rows)
         yield f"rate: {'not said' if self.rate is None else shown(float(self.rate), 'Hz')}"
         yield Lines(self.notes)
 
@@ -441,7 +441,7 @@ def _of_task(table: GainTable) -> tuple[list[float], list[float]]:
 
 def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
     inner = table.table(key)
-    missing = [axis for axis in _AXES if axis not in inner]
+    missing = [axis for axis in AXES if axis not in inner]
     if missing:
         raise InputError(f"{inner.label}: {missing[0]} is missing; give x, y and z [{unit}]")
-    return [float(inner.number(axis, unit)) for axis in _AXES]
+    return [float(inner.number(axis, unit)) for axis in AXES]
