@@ -328,10 +328,12 @@ def _read(
     whole = map(np.concatenate, zip(*pieces, strict=True))
     tests = side_by_side(table, wanted, dict(zip(wanted, whole, strict=True)))
     stamps = tests["time"]
+    indentation, force = (tests[q].astype(float) * known.factors[q] for q in QUANTITIES[1:])
     return Raw(
         table.source,
         seconds(stamps, stamps[0] if stamps.dtype.kind in "iuM" else 0.0, known.factors["time"]),
-        *(tests[q].astype(float) * known.factors[q] for q in QUANTITIES[1:]),
+        indentation,
+        force,
         tests["trial"].astype(float) if known.trial else None,
         (*known.findings, *table.notes.values()),
         known.beside,
