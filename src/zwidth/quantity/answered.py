@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
+from fractions import Fraction
 from functools import cache, cached_property
 from math import isfinite
 from pathlib import PurePath
@@ -169,6 +170,8 @@ def plain(value: Any, names: Sequence[str] = (), motion: str = "") -> Any:
         return data_of(value)
     if isinstance(value, (list, tuple)):
         return [plain(one) for one in value]
+    if isinstance(value, Fraction):
+        return float(value)
     return str(value) if isinstance(value, PurePath) else value
 
 

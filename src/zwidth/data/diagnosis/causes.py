@@ -139,12 +139,16 @@ def _share(seen: Evidence, term: str) -> str:
     return f"{shown(_given(seen, term), '%', 2)} of the energy that the law gives in a cycle"
 
 
+def _has(value: float | None, unit: str, has: str = "the device has") -> str:
+    """Beside what it is compared with; nothing where it is not known."""
+    return "" if value is None else f", {has} {shown(value, unit, 3)}"
+
+
 def _sampling(seen: Evidence) -> Iterator[str]:
     assert seen.law is not None
     demand = 0.5 * seen.law.stiffness * seen.loop_period
     unit = seen.unit("damping")
-    has = "" if seen.known.damping is None else f", the device has {shown(seen.known.damping, unit, 3)}"
-    yield f"K T/2 = {shown(demand, unit, 3)}{has}"
+    yield f"K T/2 = {shown(demand, unit, 3)}{_has(seen.known.damping, unit)}"
     yield f"the hold of the spring gives {_share(seen, 'sampling')}"
 
 
@@ -187,29 +191,19 @@ def _encoder(seen: Evidence) -> Iterator[str]:
     step = seen.resolution * (seen.law.stiffness if seen.law else 0.0)
     yield f"it moves {seen.counts:.1f} counts of the encoder from end to end"
     if step:
-        has = (
-            ""
-            if not seen.known.coulomb
-            else f", dry friction holds {shown(seen.known.coulomb, _force(seen), 3)}"
-        )
-        yield f"half a count is worth K Δ/2 = {shown(step / 2, _force(seen), 3)}{has}"
+        held = _has(seen.known.coulomb or None, _force(seen), "dry friction holds")
+        yield f"half a count is worth K Δ/2 = {shown(step / 2, _force(seen), 3)}{held}"
 
 
 def _drive(seen: Evidence) -> Iterator[str]:
-    if seen.drive is None:
-        yield from _drive_unseen(seen)
-        return
-    d = seen.drive
-    yield (
-        f"beside the command the motor gives B = {shown(d.damping, seen.unit('virtual_damping'), 3)} times "
-        f"the speed of {shown(d.damping_lag, 's', 3)} ago"
-    )
-    damper, delay = shown(d.by_damper, "%", 2), shown(d.by_delay, "%", 2)
-    yield f"that leaves {damper} of its force unexplained, a delay {delay}"
-
-
-def _drive_unseen(seen: Evidence) -> Iterator[str]:
-    if seen.by_inside is not None:
+    if (d := seen.drive) is not None:
+        yield (
+            f"beside the command the motor gives B = {shown(d.damping, seen.unit('virtual_damping'), 3)} "
+            f"times the speed of {shown(d.damping_lag, 's', 3)} ago"
+        )
+        damper, delay = shown(d.by_damper, "%", 2), shown(d.by_delay, "%", 2)
+        yield f"that leaves {damper} of its force unexplained, a delay {delay}"
+    elif seen.by_inside is not None:
         yield (
             "the motor's force is that of a spring and of an old speed, which leaves "
             f"{shown(seen.by_inside, '%', 2)} of it unexplained"
@@ -219,24 +213,10 @@ def _drive_unseen(seen: Evidence) -> Iterator[str]:
         yield "so something pushes with it: a damper inside the drive that is late, or the spring of a cable"
 
 
-def _limit_unseen(seen: Evidence) -> Iterator[str]:
-    if seen.recorded == "motor":
-        yield (
-            f"the motor's force changes at one rate for {shown(seen.ramps or 0, '%', 2)} of the "
-            f"time, a sine 37 %; its third harmonic is {seen.force_bend.real:.2f} of the first: a triangle "
-            "has 0.11, a force that is cut off less than 0"
-        )
-    else:
-        yield _moves(seen)
-        yield "so the force behind the command is smaller or later, as of a motor that cannot follow"
-
-
 def _compensation(seen: Evidence) -> Iterator[str]:
     assert seen.law is not None
-    has = (
-        "" if seen.known.coulomb is None else f", the device has {shown(seen.known.coulomb, _force(seen), 3)}"
-    )
-    yield f"the force holds {shown(seen.law.compensation, _force(seen), 3)} along the motion{has}"
+    has, unit = _has(seen.known.coulomb, _force(seen)), _force(seen)
+    yield f"the force holds {shown(seen.law.compensation, unit, 3)} along the motion{has}"
     yield f"it gives {_share(seen, 'friction compensation')}"
 
 
@@ -251,20 +231,26 @@ def _weakening(seen: Evidence) -> Iterator[str]:
 
 
 def _limit(seen: Evidence) -> Iterator[str]:
-    if seen.drive is None:
-        yield from _limit_unseen(seen)
-        return
-    d = seen.drive
-    yield (
-        f"the motor's force changes by no more than {shown(d.rate, _force(seen) + '/s', 3)}, which leaves "
-        f"{shown(d.by_rate, '%', 2)} of it unexplained, a delay {shown(d.by_delay, '%', 2)}"
-    )
-    yield f"coming late so gives {_share(seen, 'actuator limit')}"
+    if (d := seen.drive) is not None:
+        yield (
+            f"the motor's force changes by no more than {shown(d.rate, _force(seen) + '/s', 3)}, which "
+            f"leaves {shown(d.by_rate, '%', 2)} of it unexplained, a delay {shown(d.by_delay, '%', 2)}"
+        )
+        yield f"coming late so gives {_share(seen, 'actuator limit')}"
+    elif seen.recorded == "motor":
+        yield (
+            f"the motor's force changes at one rate for {shown(seen.ramps or 0, '%', 2)} of the "
+            f"time, a sine 37 %; its third harmonic is {seen.force_bend.real:.2f} of the first: a triangle "
+            "has 0.11, a force that is cut off less than 0"
+        )
+    else:
+        yield _moves(seen)
+        yield "so the force behind the command is smaller or later, as of a motor that cannot follow"
 
 
 def _structure(seen: Evidence) -> Iterator[str]:
     mass = seen.unit("mass")
-    has = "" if seen.known.mass is None else f", the device has {shown(seen.known.mass, mass, 3)}"
+    has = _has(seen.known.mass, mass)
     yield f"it moves under the motor's force as {shown(seen.apparent_mass, mass, 2)} would{has}"
     if seen.energy < 0:
         taken = shown(-seen.energy, "J", 2)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -143,7 +143,7 @@ def nothing(time: Array) -> str:
 def _above(lowest: float, position: Array, period: float, large: float = 75.0) -> Vibration | None:
     """The vibration of no less than so many hertz."""
     slower = LOWEST / lowest
-    moving = position - _drift(position, period, _DRIFT * slower)
+    moving = position - _mean(position, 0.5 * _DRIFT * slower, period, "edge")
     rows = _stretch(moving, period, _BLOCK * slower, large)
     if rows.stop - rows.start < 16:
         return None
@@ -175,7 +175,7 @@ def _measured(
     regular = float(1 - np.var(rest) / np.var(y))
     orders = sum(n * frequency * period < 0.5 for n in range(1, HARMONICS + 1))
     freedom = max(y.size - 2 * orders - 3, 1)
-    low, high = np.percentile(y - _slow(y, frequency, period), (5, 95))
+    low, high = np.percentile(y - _mean(y, 1 / frequency, period, "reflect"), (5, 95))
     return Vibration(
         rows=rows,
         around=around,
@@ -251,21 +251,10 @@ def peak(values: Array, period: float, lowest: float = LOWEST) -> float:
     return float(frequencies[k] + np.clip(shift, -1, 1) * (frequencies[1] - frequencies[0]))
 
 
-def _drift(position: Array, period: float, seconds: float) -> Array:
-    """A mean over so long."""
-    half = max(1, min(int(0.5 * seconds / period), position.size // 4))
-    return _mean(np.pad(position, half, mode="edge"), half)
-
-
-def _slow(y: Array, frequency: float, period: float) -> Array:
-    """A mean over about two cycles."""
-    half = max(1, min(int(1 / frequency / period), y.size // 4))
-    return _mean(np.pad(y, half, mode="reflect"), half)
-
-
-def _mean(padded: Array, half: int) -> Array:
-    """Over `half` values on either side."""
-    total = np.concatenate([[0.0], np.cumsum(padded)])
+def _mean(values: Array, half_time: float, period: float, beyond: Literal["edge", "reflect"]) -> Array:
+    """Over so long on either side, at most a quarter of all; and how they go on beyond their ends."""
+    half = max(1, min(int(half_time / period), values.size // 4))
+    total = np.concatenate([[0.0], np.cumsum(np.pad(values, half, mode=beyond))])
     return np.asarray((total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1))
 
 

@@ -33,17 +33,18 @@ from zwidth.data.gains.file import GainTable, read_table
 from zwidth.errors import InputError
 from zwidth.model.arms.wall import MatrixWall
 from zwidth.model.specification.table import quoted
+from zwidth.quantity.answered import answered, data_of
 from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Shown, Table
 
-_AXES = ("x", "y", "z")
+AXES = ("x", "y", "z")
 _OF_JOINT = ("N·m/rad", "N·m/(rad·s)", "N·m·s/rad")
 _MANAGER = ("controller_manager", "ros__parameters")
-_MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in _AXES)
+_MOTIONS = tuple(f"{kind}_{axis}" for kind in ("trans", "rot") for axis in AXES)
 _OF_ADMITTANCE = ("stiffness", "pd_gains", "pid_gains")
 """Tables with keys for such motions are of FZI's cartesian_controllers: positions are commanded, no force."""
 
-_OF_TASK = {"N/m": [f"pos_{axis}" for axis in _AXES], "N*m/rad": [f"rot_{axis}" for axis in _AXES]}
+_OF_TASK = {"N/m": [f"pos_{axis}" for axis in AXES], "N*m/rad": [f"rot_{axis}" for axis in AXES]}
 """Of CRISP, what it calls motions, by the unit of their springs."""
 
 _MOST_KP, _MOST_KD = Fraction(500), Fraction(5)
@@ -82,15 +83,14 @@ class _OtherLaw(InputError):
 
 @dataclass(frozen=True)
 class JointLaw:
-    """p, i and d of one joint [N·m/rad, N·m/(rad·s), N·m·s/rad], and where they stand. `keys` leads to the
-    table of its controller, and `form` is how it has them: "gains" or "joints" below the joint's name,
-    "k_gains" in a list for all joints, "pid" of its one joint."""
+    """The law of one joint. `keys` leads to the table of its controller, and `form` is how it has the gains:
+    "gains" or "joints" below the joint's name, "k_gains" in a list for all joints, "pid" of its one joint."""
 
-    name: str
-    stiffness: Fraction
-    integral: Fraction
-    damping: Fraction
-    source: str
+    name: str = answered("of the joint")
+    stiffness: Fraction = answered("p", unit="N*m/rad")
+    integral: Fraction = answered("i [N·m/(rad·s)]", key="integral_N_m_per_rad_s")
+    damping: Fraction = answered("d", unit="N*m*s/rad")
+    source: str = answered("where they stand")
     keys: tuple[str, ...] = ()
     form: str = "gains"
 
@@ -178,23 +178,14 @@ class Controllers(Shown):
             yield _gains(heads, numbers)
         for one in self.cartesian:
             rows = (("stiffness [N/m, N·m/rad]", one.stiffness), ("damping [N·s/m, N·m·s/rad]", one.damping))
-            yield _gains((("at the end", *_AXES, *(f"about {axis}" for axis in _AXES)),), rows)
+            yield _gains((("at the end", *AXES, *(f"about {axis}" for axis in AXES)),), rows)
         yield f"rate: {'not said' if self.rate is None else shown(float(self.rate), 'Hz')}"
         yield Lines(self.notes)
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
         return {
-            "joints": [
-                {
-                    "name": joint.name,
-                    "stiffness_N_m_per_rad": float(joint.stiffness),
-                    "integral_N_m_per_rad_s": float(joint.integral),
-                    "damping_N_m_s_per_rad": float(joint.damping),
-                    "source": joint.source,
-                }
-                for joint in self.joints
-            ],
+            "joints": [data_of(joint) for joint in self.joints],
             "cartesian": [
                 {
                     "stiffness_N_per_m": list(one.stiffness[:3]),
@@ -450,7 +441,7 @@ def _of_task(table: GainTable) -> tuple[list[float], list[float]]:
 
 def _three(table: GainTable, key: str, unit: str) -> Sequence[float]:
     inner = table.table(key)
-    missing = [axis for axis in _AXES if axis not in inner]
+    missing = [axis for axis in AXES if axis not in inner]
     if missing:
         raise InputError(f"{inner.label}: {missing[0]} is missing; give x, y and z [{unit}]")
-    return [float(inner.number(axis, unit)) for axis in _AXES]
+    return [float(inner.number(axis, unit)) for axis in AXES]

@@ -20,7 +20,7 @@ from zwidth.passivity.result import evidence_of, least
 from zwidth.passivity.scope import COLOUR, Outcome
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import claim_of_passivity
-from zwidth.quantity.answered import answered, answers
+from zwidth.quantity.answered import answered, answers, data_of
 from zwidth.quantity.documented import Documented
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import shown
@@ -36,15 +36,17 @@ class HeldJoint:
     """A joint, its law and the verdict on it."""
 
     law: JointLaw
-    verdict: Verdict
+    verdict: Verdict = answered("the verdict on it", stands_as={"outcome": "outcome"})
 
     @property
+    @answers(key="required_damping", unit="N*m*s/rad")
     def needed(self) -> float | None:
         """The damping that the joint needs [N·m·s/rad]; None where none is enough, or it is not known."""
         left = self.verdict.margins.get("damping")
         return None if left is None else float(self.verdict.device.motor_side.exact("damping")) - left
 
     @property
+    @answers()
     def claim(self) -> str:
         """The verdict's; of a passive one no lower rate, at which a delay of one period would be longer."""
         found = self.verdict
@@ -53,16 +55,7 @@ class HeldJoint:
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
-        return {
-            "name": self.law.name,
-            "source": self.law.source,
-            "stiffness_N_m_per_rad": float(self.law.stiffness),
-            "integral_N_m_per_rad_s": float(self.law.integral),
-            "damping_N_m_s_per_rad": float(self.law.damping),
-            "outcome": self.verdict.outcome,
-            "claim": self.claim,
-            "required_damping_N_m_s_per_rad": self.needed,
-        }
+        return {**data_of(self.law), **data_of(self)}
 
 
 @dataclass(frozen=True, repr=False)

@@ -17,7 +17,7 @@ from math import sqrt
 
 import numpy as np
 
-from zwidth.data.gains.controllers import CartesianGains
+from zwidth.data.gains.controllers import AXES, CartesianGains
 from zwidth.data.gains.parameters import Tree, double, place_of, text_of
 from zwidth.data.gains.passive import SHARE, Saved, rounded_down, share_of
 from zwidth.errors import InputError
@@ -27,7 +27,6 @@ from zwidth.passivity.workspace import PostureMap, stiffness_over_postures
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 
-_AXES = ("x", "y", "z")
 _TRIES = 4
 _LESS = 0.98
 """What a try that misses is lowered to."""
@@ -76,8 +75,9 @@ class BorneImpedance(Saved):
             yield (
                 part,
                 {
-                    axis: f"{double(values[first + n])}  # {unit}{_was(values[first + n], was[first + n])}"
-                    for n, axis in enumerate(_AXES)
+                    axis: f"{double(now)}  # {unit}"
+                    + ("" if float(now) == before else f"; your file: {before:g}")
+                    for axis, now, before in zip(AXES, values[first:], was[first:], strict=False)
                 },
             )
 
@@ -163,7 +163,3 @@ def borne_impedance(
 
 def _part(value: float, times: float) -> Fraction:
     return Fraction(str(value)) if times == 1 else rounded_down(times * value)
-
-
-def _was(now: Fraction, before: float) -> str:
-    return "" if float(now) == before else f"; your file: {before:g}"

@@ -27,7 +27,6 @@ from zwidth.errors import InputError
 from zwidth.model.device import Device
 from zwidth.passivity.check import check
 from zwidth.passivity.transmission import seen_at_motor
-from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
@@ -98,10 +97,7 @@ class PassiveGains(Saved):
     def to_yaml(self) -> str:
         """As text: below the names of the file, units and what was proved in comments."""
         return parameter_file(
-            [
-                (joint.law, _comment(law, joint.law))
-                for law, joint in zip(self.asked.joints, self.joints, strict=True)
-            ],
+            [(law, _comment(old, law)) for old, law in self.changed],
             self.rate,
             self.asked.manager,
             list(self.report()),
@@ -192,10 +188,7 @@ class _Joint:
         p, d = float(self.law.stiffness), float(self.law.damping)
         if min(p, d) < 0:
             raise InputError(f"{self.law.source}: p and d must be ≥ 0: a spring pulls back, a damper brakes")
-        own = HeldJoint(
-            self._with(self.law.stiffness, self.law.damping),
-            self._verdict(self.law.stiffness, self.law.damping),
-        )
+        own = self._held(self.law.stiffness, self.law.damping)
         if own.verdict.passive and not stiffest:
             return own
         found = self._stiffest() if stiffest else self._near(p, d)
@@ -241,14 +234,12 @@ class _Joint:
     def _need(self, p: float, d: float) -> float:
         if not p and not d:
             return 0.0
-        margin = self._verdict(Exact(p).fraction, Exact(d).fraction).margins.get("damping")
+        margin = self._held(Exact(p).fraction, Exact(d).fraction).verdict.margins.get("damping")
         return inf if margin is None else self.budget - margin
 
-    def _verdict(self, p: Fraction, d: Fraction) -> Verdict:
-        return check(self.device, wall(self._with(p, d), self.loops.rate))
-
-    def _with(self, p: Fraction, d: Fraction) -> JointLaw:
-        return replace(self.law, stiffness=p, integral=Fraction(0), damping=d)
+    def _held(self, p: Fraction, d: Fraction) -> HeldJoint:
+        law = replace(self.law, stiffness=p, integral=Fraction(0), damping=d)
+        return HeldJoint(law, check(self.device, wall(law, self.loops.rate)))
 
     def _proved(self, p: float, d: float) -> HeldJoint | None:
         """Rounded down, and lower until it is proved; by halving where encoder steps ask for less."""
@@ -263,8 +254,8 @@ class _Joint:
         stiffness, damping = self.law.stiffness if kept else rounded_down(p), rounded_down(d)
         if not stiffness and not damping:
             return None
-        verdict = self._verdict(stiffness, damping)
-        return HeldJoint(self._with(stiffness, damping), verdict) if verdict.passive else None
+        held = self._held(stiffness, damping)
+        return held if held.verdict.passive else None
 
 
 def _last(holds: Callable[[float], bool], low: float, high: float) -> float:

@@ -172,14 +172,9 @@ class JointVerdict(Shown):
 
     def saved(self) -> dict[str, Any]:
         """The same with the proof, or the violation, for `zwidth verify`."""
-        parts = ("certificate", "violation", "motion")
-        found = {name: getattr(self.verdict, name) for name in parts}
-        proofs = {
-            "witness" if name == "motion" else name: part.saved()
-            for name, part in found.items()
-            if part is not None
-        }
-        return {**self.to_dict(), **proofs}
+        of = self.verdict
+        proofs = {"certificate": of.certificate, "violation": of.violation, "witness": of.motion}
+        return {**self.to_dict(), **{key: part.saved() for key, part in proofs.items() if part is not None}}
 
 
 @dataclass(frozen=True, repr=False)

@@ -204,7 +204,7 @@ def _wandering(time: Array) -> list[Array]:
     return [np.interp(time - time[0], knots, row) for row in np.eye(knots.size)[1:]]
 
 
-def hole_places(time: Array, position: Array, source: str = "the record") -> tuple[int, ...]:
+def hole_places(time: Array, position: Array) -> tuple[int, ...]:
     """The samples that come after a hole in time across which the position moved."""
     steps = np.diff(time)
     padded = np.concatenate([[np.inf], steps, [np.inf]])
@@ -213,7 +213,7 @@ def hole_places(time: Array, position: Array, source: str = "the record") -> tup
     holes = holes[(holes > 1) & (holes < time.size - 1)]
     if holes.size > MOST_HOLES:
         raise InputError(
-            f"{source} has {holes.size} holes in time, the first after t = "
+            f"the record has {holes.size} holes in time, the first after t = "
             f"{shown(time[holes[0] - 1], 's', 6)}: what a tissue holds after each is not known; lose no "
             "samples, or give a part with fewer"
         )

@@ -127,25 +127,20 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
     if bounded is not None:
         return bounded
     ideal = decide(device, environment)
+    uncounted = partial(Judged, machine=machine, ideal=ideal, verdict=ideal, counted=False)
     if machine.error is None:
-        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=machine.reason)
+        return uncounted(reason=machine.reason)
     (friction, most), off = ends(device.coulomb_friction), Fraction(machine.error)
     if friction < off:
         dry = told_quantity(friction, "coulomb_friction", device.motion, 4)
-        return Judged(
-            machine=machine,
-            ideal=ideal,
-            verdict=ideal,
-            counted=False,
-            reason=f"The device has {dry} of Coulomb friction to pay for it.",
-        )
+        return uncounted(reason=f"The device has {dry} of Coulomb friction to pay for it.")
     if ideal.outcome not in PROVED:
         return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)
     spent = Exact(friction - off) if most == friction else Interval(friction - off, most - off)
     left = device.replace(coulomb_friction=spent)
     found = decide(left, environment)
     if off and found.outcome in PROVED and found.scope.transmission == "as given":
-        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=_OF_A_KNOWN)
+        return uncounted(reason=_OF_A_KNOWN)
     return Judged(machine=machine, ideal=ideal, verdict=found, counted=True)
 
 

@@ -231,17 +231,22 @@ def findings(granted: Granted, before: Moment, root: Path = Path("/")) -> list[F
 
     The load `before` the measurement, and what the host took since, are told.
     """
-    return [
-        _kernel(root),
-        _priority(granted),
-        _memory(granted, root),
-        _governor(root),
-        _sleep(granted, root),
-        _usb(root),
-        _virtual(root, before),
-        _load(root, before),
-        _clock(root),
-    ]
+    told = {
+        "kernel": _kernel(root),
+        "real-time priority": _priority(granted),
+        "memory": _memory(granted, root),
+        "frequency of the cores": _governor(root),
+        "sleep of the cores": _sleep(granted, root),
+        "USB serial ports": _usb(root),
+        "virtual machine": _virtual(root, before),
+        "load": _load(root, before),
+        "clock": _clock(root),
+    }
+    return [Finding(about, *seen) for about, seen in told.items()]
+
+
+Seen = tuple[str | None, str | None]
+"""What was read, and what to change, as of `Finding`."""
 
 
 def _read(path: Path) -> str | None:
@@ -259,113 +264,109 @@ def _all(root: Path, pattern: str) -> Iterator[tuple[Path, str]]:
             yield path, text
 
 
-def _kernel(root: Path) -> Finding:
-    about, version = "kernel", _read(root / "proc/version")
+def _kernel(root: Path) -> Seen:
+    version = _read(root / "proc/version")
     if version is None:
-        return Finding(about, None)
+        return None, None
     release = version.split()[2] if len(version.split()) > 2 else platform.release()
     if _read(root / "sys/kernel/realtime") == "1" or "PREEMPT_RT" in version:
-        return Finding(about, f"{release}, PREEMPT_RT")
-    return Finding(
-        about,
+        return f"{release}, PREEMPT_RT", None
+    return (
         f"{release}, without PREEMPT_RT",
         "its own work may hold the loop up for milliseconds: install a PREEMPT_RT kernel, such as "
         "linux-image-rt-amd64 of Debian",
     )
 
 
-def _priority(granted: Granted) -> Finding:
-    about = "real-time priority"
+def _priority(granted: Granted) -> Seen:
     if "priority" in granted:
-        return Finding(about, granted["priority"].told)
+        return granted["priority"].told, None
     advice = None
     if hasattr(os, "sched_setscheduler"):
         advice = (
             f'add "@realtime - rtprio {PRIORITY}" to /etc/security/limits.conf, your user to the group '
             "realtime, and log in again"
         )
-    return Finding(about, f"not granted: {granted['priority'].told}", advice)
+    return f"not granted: {granted['priority'].told}", advice
 
 
-def _memory(granted: Granted, root: Path) -> Finding:
-    about, told = "memory", _read(root / "proc/meminfo")
+def _memory(granted: Granted, root: Path) -> Seen:
+    told = _read(root / "proc/meminfo")
     if told is None:
-        return Finding(about, None)
+        return None, None
     kib = {line.split(":")[0]: int(line.split()[1]) for line in told.splitlines() if len(line.split()) > 1}
     total, free = kib.get("SwapTotal"), kib.get("SwapFree")
     if total is None or free is None:
-        return Finding(about, None)
+        return None, None
     swap = f"swap {_mib(total - free)} of {_mib(total)} used" if total else "no swap"
     if "memory" in granted:
-        return Finding(about, f"locked while the loop runs; {swap}")
+        return f"locked while the loop runs; {swap}", None
     limit = memory_limit()
     reason = granted["memory"].told if limit is None else f"this user may lock {_mib(limit // 1024)}"
     advice = 'add "@realtime - memlock unlimited" to /etc/security/limits.conf'
-    return Finding(about, f"not locked: {reason}; {swap}", advice if total else None)
+    return f"not locked: {reason}; {swap}", advice if total else None
 
 
 def _mib(kib: int) -> str:
     return f"{kib / 1024:.0f} MiB"
 
 
-def _governor(root: Path) -> Finding:
-    about = "frequency of the cores"
+def _governor(root: Path) -> Seen:
     told = [text for _, text in _all(root, "sys/devices/system/cpu/cpu[0-9]*/cpufreq/scaling_governor")]
     if not told:
-        return Finding(about, None)
+        return None, None
     slow = [text for text in told if text != "performance"]
     seen = ", ".join(f"{told.count(name)} × {name}" for name in sorted(set(told)))
     advice = "a slow core takes longer for each step: sudo cpupower frequency-set -g performance"
-    return Finding(about, f"governor {seen}", advice if slow else None)
+    return f"governor {seen}", advice if slow else None
 
 
-def _sleep(granted: Granted, root: Path) -> Finding:
+def _sleep(granted: Granted, root: Path) -> Seen:
     """The longest time that a core takes to come back from a sleep that it may go into."""
-    about, longest = "sleep of the cores", -1
+    longest = -1
     for path, text in _all(root, "sys/devices/system/cpu/cpu[0-9]*/cpuidle/state[0-9]*/latency"):
         if _read(path.with_name("disable")) in (None, "0") and text.isdigit():
             longest = max(longest, int(text))
     if longest < 0:
-        return Finding(about, None)
+        return None, None
     seen = f"the deepest takes {shown(1e-6 * longest, 's')} to end"
     if "awake cores" in granted:
-        return Finding(about, f"{seen}, and is forbidden while the loop runs")
+        return f"{seen}, and is forbidden while the loop runs", None
     advice = "sudo chmod o+w /dev/cpu_dma_latency, and the loop keeps the cores awake while it runs"
-    return Finding(about, seen, advice if longest > _DEEP else None)
+    return seen, advice if longest > _DEEP else None
 
 
-def _usb(root: Path) -> Finding:
-    about = "USB serial ports"
+def _usb(root: Path) -> Seen:
     if not (root / "sys/bus").is_dir():
-        return Finding(about, None)
+        return None, None
     ports = [
         (path.parent.name, int(text), path)
         for path, text in _all(root, "sys/bus/usb-serial/devices/*/latency_timer")
         if text.isdigit()
     ]
     if not ports:
-        return Finding(about, "none that holds bytes back by a latency timer")
+        return "none that holds bytes back by a latency timer", None
     seen = ", ".join(f"{name} holds bytes back for {shown(1e-3 * timer, 's')}" for name, timer, _ in ports)
     slow = next((path for _, timer, path in ports if timer > 1), None)
     where = "" if slow is None else "/" + str(slow.relative_to(root))
-    return Finding(about, seen, f"echo 1 | sudo tee {where}" if slow else None)
+    return seen, f"echo 1 | sudo tee {where}" if slow else None
 
 
-def _virtual(root: Path, before: Moment) -> Finding:
-    about, told = "virtual machine", _read(root / "proc/cpuinfo")
+def _virtual(root: Path, before: Moment) -> Seen:
+    told = _read(root / "proc/cpuinfo")
     if told is None:
-        return Finding(about, None)
+        return None, None
     flags = next((line for line in told.splitlines() if line.startswith("flags")), None)
     if flags is None:  # other processors than those of the x86 family do not tell
-        return Finding(about, None)
+        return None, None
     if "hypervisor" not in flags.split():
-        return Finding(about, "no")
+        return "no", None
     share = _stolen(before, Moment.now(root))
     if share is None:
-        return Finding(about, "yes; how much time the host takes is not told")
+        return "yes; how much time the host takes is not told", None
     advice = "the host runs others in that time: serve on a machine of your own, or pin its virtual cores"
     seen = f"yes; its host took {shown(share, '%', 2)} of the time meanwhile, as the kernel counts"
-    return Finding(about, seen, advice if share > _STOLEN else None)
+    return seen, advice if share > _STOLEN else None
 
 
 def _stolen(before: Moment, after: Moment) -> float | None:
@@ -375,20 +376,18 @@ def _stolen(before: Moment, after: Moment) -> float | None:
     return (after.stolen - before.stolen) / passed if passed > 0 else None
 
 
-def _load(root: Path, before: Moment) -> Finding:
-    about = "load"
+def _load(root: Path, before: Moment) -> Seen:
     cores = len(list(root.glob("sys/devices/system/cpu/cpu[0-9]*")))
     if before.load is None or not cores:
-        return Finding(about, None)
+        return None, None
     seen = f"{before.load:g} tasks ran or waited in the minute before, on {cores} core{'s' * (cores > 1)}"
     advice = "end what else runs, or keep a core free (isolcpus= on the kernel's command line)"
-    return Finding(about, seen, advice if before.load > _BUSY * cores else None)
+    return seen, advice if before.load > _BUSY * cores else None
 
 
-def _clock(root: Path) -> Finding:
-    about = "clock"
+def _clock(root: Path) -> Seen:
     told = _read(root / "sys/devices/system/clocksource/clocksource0/current_clocksource")
     if told is None:
-        return Finding(about, None)
+        return None, None
     advice = f"each look at {told} is a call into the kernel, up to microseconds; see why tsc was given up"
-    return Finding(about, told, None if told in _FAST_CLOCKS else advice)
+    return told, None if told in _FAST_CLOCKS else advice

@@ -50,6 +50,11 @@ class Served(Documented):
         row="force cut by the safety, not in the verdict",
     )
 
+    @property
+    def failed(self) -> bool:
+        """True where the force ended by itself, before its time."""
+        return bool(self.ended) and self.ended not in (ending(ASKED), ending(DONE))
+
 
 @dataclass(frozen=True, repr=False)
 class ServoReport(Served):
@@ -95,7 +100,7 @@ class ServoReport(Served):
     def failed(self) -> bool:
         """True where the force ended by itself, before its time, or the recording did."""
         lost = self.recorded is not None and (self.recorded.failure is not None or self.recorded.rows_lost)
-        return bool(lost or (self.ended and self.ended not in (ending(ASKED), ending(DONE))))
+        return super().failed or bool(lost)
 
     def report(self) -> Iterable[Part]:
         """The answer first."""
@@ -198,11 +203,6 @@ class PairServoReport(Served):
         row=("the leader's friction took at least", "the follower's friction took at least"),
     )
     met_hardware: bool = answered("False where only emulators of these devices were met", only_shown=True)
-
-    @property
-    def failed(self) -> bool:
-        """True where the force ended by itself, before its time."""
-        return bool(self.ended) and self.ended not in (ending(ASKED), ending(DONE))
 
     def report(self) -> Iterable[Part]:
         """The answer first."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from zwidth.data.diagnosis.causes import SURE
 from zwidth.data.diagnosis.pairs.change import PairChange, change_for
-from zwidth.data.diagnosis.pairs.energy import PairEvidence, gather, vibrates
+from zwidth.data.diagnosis.pairs.energy import PAIR_CAUSES, PairEvidence, gather, vibrates
 from zwidth.data.diagnosis.pairs.recording import ARMS, PairRecording, read_pair
 from zwidth.data.diagnosis.result import Answer, key_with_unit, rows_of_energy, rows_of_likely
 from zwidth.data.diagnosis.vibration import nothing
@@ -102,7 +102,7 @@ def _unit(name: str, seen: PairEvidence) -> str:
     return GLOSSARY[name].unit_for("rotary" if seen.rotary else "linear")
 
 
-# Why two arms may shake: each reason with what happens, and how likely it is.
+# How likely each reason is for two arms to shake.
 #
 # The energy of a cycle comes apart into terms W_i (`energy`), and
 #
@@ -112,17 +112,6 @@ def _unit(name: str, seen: PairEvidence) -> str:
 # friction and terms that take pay for what grows with the square of the motion, Coulomb friction pays for its
 # compensation, as far as the devices are known; p is the mean over what an owner may be wrong by.  Where
 # nothing is left over, something that is not in the file feeds the motion, and nothing is named.
-
-PAIR_CAUSES: Mapping[str, str] = {
-    "link delay": "each arm is pulled to where the other one was when its reading was sent",
-    "sampling": "the spring is held from sample to sample and so pushes out harder than it was pressed in",
-    "delay": "the forces come late after the arms' own readings",
-    "damping": "damping against the other arm's speed comes so late that it drives the motion",
-    "local damping": "damping of each arm's own speed comes so late, or has such a sign, that it drives",
-    "friction compensation": "more friction is compensated than there is: the compensation drives the motion",
-    "actuator limit": "a motor cannot follow: its force comes late because it changes no faster",
-}
-"""The terms of `energy`, in words."""
 
 STEEPNESS = 6.1
 """γ."""
@@ -278,7 +267,7 @@ def _evidence(cause: str, seen: PairEvidence) -> Iterator[str]:
     leader, follower = seen.laws
     assert leader is not None
     assert follower is not None
-    units = {name: GLOSSARY[name].unit_for("rotary" if seen.rotary else "linear") for name in _UNITS}
+    virtual = _unit("virtual_damping", seen)
     given = sum(max(0.0, work) for work in seen.supplied.values())
     yield f"{_TERM[cause]} gives {shown(seen.supplied[cause] / given, '%', 2)} of what goes in in a cycle"
     links = [law.link_delay for law in (leader, follower)]
@@ -289,12 +278,12 @@ def _evidence(cause: str, seen: PairEvidence) -> Iterator[str]:
         )
     elif cause == "damping":
         yield (
-            f"B = {shown(leader.damping, units['virtual_damping'], 3)} acts on a speed of the other arm that "
+            f"B = {shown(leader.damping, virtual, 3)} acts on a speed of the other arm that "
             f"is {shown(max(links), 's', 3)} old, "
             f"{np.degrees(seen.vibration.angular * max(links)):.0f}° of the motion"
         )
     elif cause == "local damping":
-        yield f"D = {shown(leader.local_damping, units['virtual_damping'], 3)} of each arm's own speed"
+        yield f"D = {shown(leader.local_damping, virtual, 3)} of each arm's own speed"
     elif cause == "friction compensation":
         force = shown(leader.compensation, "N*m" if seen.rotary else "N", 3)
         yield f"the force holds {force} along the motion"
@@ -307,10 +296,9 @@ def _evidence(cause: str, seen: PairEvidence) -> Iterator[str]:
         late = [delay for delay in seen.delays if delay is not None]
         yield f"a force comes up to {shown(max(late, default=0.0), 's', 3)} after its arm's own reading"
     else:
-        yield f"K T/2 = {shown(0.5 * leader.stiffness * seen.loop_period, units['damping'], 3)}"
+        yield f"K T/2 = {shown(0.5 * leader.stiffness * seen.loop_period, _unit('damping', seen), 3)}"
 
 
-_UNITS = ("stiffness", "damping", "virtual_damping")
 _TERM = {name: f"the {name}" for name in PAIR_CAUSES} | {
     "sampling": "the hold of the spring",
     "damping": "the damper between the arms",

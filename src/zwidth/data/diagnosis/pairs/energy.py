@@ -38,15 +38,16 @@ from zwidth.native.compiled import Array
 
 Phasors = NDArray[np.complex128]
 
-TERMS = (
-    "link delay",
-    "sampling",
-    "delay",
-    "damping",
-    "local damping",
-    "friction compensation",
-    "actuator limit",
-)
+PAIR_CAUSES: Mapping[str, str] = {
+    "link delay": "each arm is pulled to where the other one was when its reading was sent",
+    "sampling": "the spring is held from sample to sample and so pushes out harder than it was pressed in",
+    "delay": "the forces come late after the arms' own readings",
+    "damping": "damping against the other arm's speed comes so late that it drives the motion",
+    "local damping": "damping of each arm's own speed comes so late, or has such a sign, that it drives",
+    "friction compensation": "more friction is compensated than there is: the compensation drives the motion",
+    "actuator limit": "a motor cannot follow: its force comes late because it changes no faster",
+}
+"""The terms of the energy, each in words as a reason to shake."""
 
 _MOST_ROWS = 20_000
 """Up to the end of the vibration, for the law."""
@@ -126,7 +127,7 @@ def gather(
     ]
     forces, laws, delays, rates, added, behind = zip(*seen, strict=True)
     ratio = _ratio(laws)
-    supplied = dict.fromkeys(TERMS, 0.0)
+    supplied = dict.fromkeys(PAIR_CAUSES, 0.0)
     energy = 0.0
     for k, weight in ((0, 1.0), (1, ratio)):
         own, fitted = motions[k], laws[k]

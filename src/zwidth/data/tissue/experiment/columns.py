@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zwidth.data.logs.columns import measured_in
+from zwidth.data.logs.columns import dimension_of, measured_in
 from zwidth.data.logs.read import table_of_file
 from zwidth.data.logs.rows import seconds, side_by_side
 from zwidth.data.logs.table import Finding, Table, listed, readable, understood_sheets
@@ -75,23 +75,15 @@ _AGAIN = re.compile(r" \(\d+\)$")
 _WORD = re.compile(r"[^\W\d_]+")
 
 
-class Column(NamedTuple):
-    """A column as it was understood: its name in the file, and SI per number in it."""
-
-    name: str
-    factor: float
-
-
 class Columns(NamedTuple):
-    """The column of each quantity, that which numbers the trials, what was guessed, and of how many tests
-    that stand side by side these are one."""
+    """The column of each quantity and SI per number in it, the column that numbers the trials, what was
+    guessed, and of how many tests that stand side by side these are one."""
 
-    time: Column
-    indentation: Column
-    force: Column
+    names: dict[str, str]
+    factors: dict[str, float]
     trial: str | None
     findings: tuple[Finding, ...]
-    beside: int = 1
+    beside: int
 
 
 def recognised(
@@ -116,15 +108,8 @@ def recognised(
     _refuse_without_unit(table, found, units)
     factors = {q: _factor(table, q, name, units.get(q)) for q, name in found.items()}
     numbered = [name for name in table.units if name not in found.values() and _TRIALS & set(_words(name))]
-    time, indentation, force = (Column(found[q], factors[q]) for q in QUANTITIES)
-    return Columns(
-        time,
-        indentation,
-        force,
-        numbered[0] if len(numbered) == 1 else None,
-        tuple(_guessed(table, found, chosen, units)),
-        tests,
-    )
+    trial = numbered[0] if len(numbered) == 1 else None
+    return Columns(found, factors, trial, tuple(_guessed(table, found, chosen, units)), tests)
 
 
 def _side_by_side(table: Table) -> dict[str, list[str]]:
@@ -247,13 +232,9 @@ def _kind(unit: str | None, quantity: str) -> str | None:
     bare = spelled(unit)
     if quantity == "force" and bare in _MASSES:
         return "force"
-    if not bare:
-        return None
-    try:
-        dimension = measured_in(bare).dimension
-    except InputError:
-        return None
-    return next((name for name, own in _DIMENSIONS.items() if own == dimension), "")
+    dimension = dimension_of(bare or None)
+    own = (name for name, known in _DIMENSIONS.items() if known == dimension)
+    return None if dimension is None else next(own, "")
 
 
 def _refuse_without_unit(table: Table, found: Mapping[str, str], units: Mapping[str, str]) -> None:
@@ -339,22 +320,20 @@ def _read(
     table: Table, columns: Mapping[str, str] | None, units: Mapping[str, str] | None, number: int
 ) -> Raw:
     known = recognised(table, columns, units, number)
-    names = [known.time.name, known.indentation.name, known.force.name]
-    wanted = [*names, known.trial] if known.trial else names
-    pieces = list(table.read(tuple(wanted)))
-    whole = [np.concatenate([piece[k] for piece in pieces]) for k in range(len(wanted))]
-    if not pieces or whole[0].size > MOST_ROWS:
-        raise InputError(
-            f"{table.source} has {len(pieces) and whole[0].size} rows; a test has 1 to {MOST_ROWS}"
-        )
-    keys = ("time", "indentation", "force", "trial")[: len(wanted)]
-    tests = side_by_side(table, dict(zip(keys, wanted, strict=True)), dict(zip(keys, whole, strict=True)))
+    wanted = known.names | ({"trial": known.trial} if known.trial else {})
+    pieces = list(table.read(tuple(wanted.values())))
+    rows = sum(piece[0].size for piece in pieces)
+    if not pieces or rows > MOST_ROWS:
+        raise InputError(f"{table.source} has {rows} rows; a test has 1 to {MOST_ROWS}")
+    whole = map(np.concatenate, zip(*pieces, strict=True))
+    tests = side_by_side(table, wanted, dict(zip(wanted, whole, strict=True)))
     stamps = tests["time"]
+    indentation, force = (tests[q].astype(float) * known.factors[q] for q in QUANTITIES[1:])
     return Raw(
         table.source,
-        seconds(stamps, stamps[0] if stamps.dtype.kind in "iuM" else 0.0, known.time.factor),
-        tests["indentation"].astype(float) * known.indentation.factor,
-        tests["force"].astype(float) * known.force.factor,
+        seconds(stamps, stamps[0] if stamps.dtype.kind in "iuM" else 0.0, known.factors["time"]),
+        indentation,
+        force,
         tests["trial"].astype(float) if known.trial else None,
         (*known.findings, *table.notes.values()),
         known.beside,

@@ -86,7 +86,7 @@ _DEVICES, _ID, _STATE, _POSITION, _CONDITION, _READY = (
     np.frombuffer(name, np.uint8)
     for name in (b"inverse3", b"device_id", b"state", b"cursor_position", b"status", b"ready")
 )
-_X, _Y, _Z = (np.frombuffer(name, np.uint8) for name in (b"x", b"y", b"z"))
+_AXES = np.frombuffer(b"xyz", np.uint8)
 
 
 @compiled
@@ -178,7 +178,9 @@ def _answer(memory: Array, text: Bytes, end: int, outbox: Bytes) -> int:
             return REFUSED
     at = member(text, device, end, _STATE)
     at = member(text, at, end, _POSITION) if at >= 0 else at
-    at = _coordinate(text, at, end, int(memory[AXIS])) if at >= 0 else at
+    axis = int(memory[AXIS])
+    if at >= 0:
+        at = member(text, at, end, _AXES[axis : axis + 1])
     if at < 0:
         return GARBLED
     value, behind = read_decimal(text, at, end)
@@ -198,14 +200,6 @@ def _find_device(text: Bytes, end: int, name: Bytes) -> int:
             return at
         at = next_element(text, at, end)
     return at
-
-
-@compiled
-def _coordinate(text: Bytes, at: int, end: int, axis: int) -> int:
-    """Where the number of this axis starts."""
-    if axis == 0:
-        return member(text, at, end, _X)
-    return member(text, at, end, _Y) if axis == 1 else member(text, at, end, _Z)
 
 
 @exchanged
@@ -302,15 +296,13 @@ class Inverse(CompiledConnection):
         line, behind = websocket.connect(self._host, self._port, "/", _ANSWER_TIME)
         self._line = line
         try:
-            message, behind = websocket.read_message(line, behind)
-            devices = _inventory(message, self.address)
-            for _ in range(_ASKED_AGAIN):  # one that it has not found yet, as other clients do
-                if devices:
-                    break
-                time.sleep(_BETWEEN)
-                websocket.send_text(line, _WHOLE_STATE)
+            for again in range(_ASKED_AGAIN + 1):
+                if again:  # for one that it has not found yet, as other clients do
+                    time.sleep(_BETWEEN)
+                    websocket.send_text(line, _WHOLE_STATE)
                 message, behind = websocket.read_message(line, behind)
-                devices = _inventory(message, self.address)
+                if devices := _inventory(message, self.address):
+                    break
             self._choose(devices)
             line.setblocking(False)
             self._opened = self._memory(line.fileno(), behind)

@@ -292,17 +292,14 @@ class McapFile:
         self._give(record(layout.DATA_END, pack("<I", 0)))
         self._give(self._summary())
         os.fsync(self._file)
-        self._release()
+        os.close(self._file)
 
     def abandon(self) -> None:
         """Close the file as it is, after the disk has refused."""
         with suppress(OSError):
             os.ftruncate(self._file, self._at)  # a part of a chunk may be there
         with suppress(OSError):
-            self._release()
-
-    def _release(self) -> None:
-        os.close(self._file)
+            os.close(self._file)
 
     def _give(self, data: bytes) -> None:
         """All of it to the system: it may take it in parts."""
