@@ -84,7 +84,7 @@ def _fraction(value: RealLike) -> Fraction:
             fraction = Fraction(decimal)
     except InvalidOperation:
         raise InputError(f"expected a number, got {value!r}") from None
-    # without a division: many numbers are read
+    # 0 or a magnitude of 1e-40 … 1e40, without a division: many numbers are read
     top, bottom = abs(fraction.numerator), fraction.denominator
     if top and not (top <= bottom * _LARGEST and bottom <= top * _LARGEST):
         raise InputError(_magnitude(value))

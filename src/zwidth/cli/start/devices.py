@@ -88,6 +88,7 @@ def _ranges(entry: Entry) -> Table:
 
 
 def _document(entry: Entry) -> dict[str, Any]:
+    """Each value has its unit in its key, null where no source gives one."""
     values = {
         _key(key, datum): {"value": datum.value, "source": datum.source}
         for key, datum in entry.values.items()
