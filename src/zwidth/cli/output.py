@@ -50,14 +50,9 @@ def tolerate_encoding() -> None:
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
-            only_ascii = _asks_for_c() and stream.isatty()
+            asked = next((v for name in ("LC_ALL", "LC_CTYPE", "LANG") if (v := os.environ.get(name))), "")
+            only_ascii = asked in ("C", "POSIX") and stream.isatty()
             reconfigure(errors="zwidth", **({"encoding": "ascii"} if only_ascii else {}))
-
-
-def _asks_for_c() -> bool:
-    """True where the environment sets the locale of characters to C."""
-    asked = next((v for name in ("LC_ALL", "LC_CTYPE", "LANG") if (v := os.environ.get(name))), "")
-    return asked in ("C", "POSIX")
 
 
 def spelled(text: str) -> str:
@@ -102,7 +97,7 @@ def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
         # What is buffered must not fail again when Python closes the stream.
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if not isinstance(error, BrokenPipeError):
-            raise InputError(f"the output cannot be written: {_reason(error)}") from None
+            raise InputError(f"the output cannot be written: {error.strerror or error}") from None
 
 
 def print_text(text: object) -> None:
@@ -207,10 +202,6 @@ def print_found(as_json: bool, document: Callable[[], str], report: Report, *wri
     if parts is not None:
         print_report(parts)
     say_written(*written)
-
-
-def _reason(error: Exception) -> str:
-    return getattr(error, "strerror", None) or str(error)
 
 
 PIPED, WIDEST, NARROWEST = 80, 100, 20

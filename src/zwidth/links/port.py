@@ -86,7 +86,7 @@ class Port(Parametric):
             rounded_down(ends(self.device.damping)[0]),
             rounded_down(ends(self.device.coulomb_friction)[0]),
             float(self.device.exact("resolution")),
-            _lower(self.device, "force_limit"),
+            0.0 if self.device.force_limit is None else float(ends(self.device.force_limit)[0]),
             0.0 if self.device.force_resolution is None else float(self.device.exact("force_resolution")),
             float(_samples_late(self.device)),
         ]
@@ -239,11 +239,6 @@ def _samples_late(device: Device) -> int:
             "sample ends, as hold_back, or --hold-back, takes for granted"
         )
     return int(late)
-
-
-def _lower(device: Device, key: str) -> float:
-    value = getattr(device, key)
-    return 0.0 if value is None else float(ends(value)[0])
 
 
 # What one port sends to the other: for which run of it, a wave, and the sums of waves and energies so far.

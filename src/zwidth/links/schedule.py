@@ -68,15 +68,11 @@ class Schedule(Parametric):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        not_one = self.burst < 1 or (self.burst > 1 and not self.loss)
         alone = "so many packets are lost in a row; give both, such as a loss of 0.1"
         for key, wrong, bound, why in (
             ("loss", self.loss >= 1, "below 1", "a link that loses all joins nothing"),
-            (
-                "burst",
-                self.burst < 1 or (self.burst > 1 and not self.loss),
-                "≥ 1, and 1 without a loss",
-                alone,
-            ),
+            ("burst", not_one, "≥ 1, and 1 without a loss", alone),
             ("duplicates", self.duplicates > 1, "at most 1", "it is the share that comes twice"),
         ):
             if wrong:
@@ -100,15 +96,14 @@ class Schedule(Parametric):
         """
         first, second, bursts, doubled = (np.random.default_rng((self.seed, way, k)) for k in range(4))
         sent = np.arange(1, count + 1)
-        times = [self._late(draws, count, period) + sent for draws in (first, second)]
+        delay, jitter = (float(given.fraction / period) for given in (self.delay, self.jitter))
+        times = [
+            np.ceil(delay + draws.random(count) * jitter - 1e-9).astype(np.int64) + sent
+            for draws in (first, second)
+        ]
         kept = ~np.fromiter(self.losses(iter(bursts.random(count + 1))), np.bool_, count)
         twice = kept & (doubled.random(count) < float(self.duplicates))
         return np.where(kept, times[0], LOST), np.where(twice, times[1], LOST)
-
-    def _late(self, draws: np.random.Generator, count: int, period: Fraction) -> Ticks:
-        spread = draws.random(count) * float(self.jitter.fraction / period)
-        late: Ticks = np.ceil(float(self.delay.fraction / period) + spread - 1e-9).astype(np.int64)
-        return late
 
     def losses(self, draws: Iterator[float]) -> Iterator[bool]:
         """Of each packet whether it is lost: Gilbert's two states, in the one all are, in the other none.

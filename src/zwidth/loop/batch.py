@@ -333,7 +333,8 @@ def _dataset(
             "a motion has too many stops in one sample to be followed: device, hand and forces differ by so "
             "many orders of magnitude that rounding decides; scale them closer together"
         )
-    names = _dimension_names(owners)
+    keys = [key for _, key in owners]
+    names = [key if keys.count(key) == 1 else f"{owner}_{key}" for owner, key in owners]
     shape = (len(finished),) if together else tuple(len(values) for values in axes.values())
     dims = ("case",) if together else tuple(names)
     units = (*UNITS[base.device.motion], "J", "1")
@@ -355,11 +356,6 @@ def _dataset(
     if not finished.all():
         attributes["interrupted"] = f"{int(finished.sum())} of {len(finished)} loops are finished"
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
-
-
-def _dimension_names(owners: list[tuple[str, str]]) -> list[str]:
-    keys = [key for _, key in owners]
-    return [key if keys.count(key) == 1 else f"{owner}_{key}" for owner, key in owners]
 
 
 def _unit_of(owner: tuple[str, str], base: _Base) -> dict[str, str]:

@@ -137,8 +137,11 @@ class Laid(NamedTuple):
         part = _number(phase, "encoder_phase")
         if not 0 <= part < 1:
             raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {part:g}")
-        if self.operator.kinematic:
-            _refuse_start(position, velocity)
+        if self.operator.kinematic and (position is not None or velocity != 0.0):
+            raise InputError(
+                "a prescribed motion says itself where it starts: leave initial_position and "
+                "initial_velocity out"
+            )
         place = self.rest if position is None else read_number(position, "position", "initial_position")
         return float(place), float(read_number(velocity, "velocity", "initial_velocity")), part
 
@@ -443,13 +446,6 @@ def check_signals(signals: Signals, samples: int) -> None:
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
             raise InputError(f"the operator's {name} at sample {bad[0]} is {values[bad[0]]}, not a number")
-
-
-def _refuse_start(position: RealLike | None, velocity: RealLike) -> None:
-    if position is not None or velocity != 0.0:
-        raise InputError(
-            "a prescribed motion says itself where it starts: leave initial_position and initial_velocity out"
-        )
 
 
 def _number(value: object, what: str) -> float:

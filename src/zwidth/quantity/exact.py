@@ -84,15 +84,11 @@ def _fraction(value: RealLike) -> Fraction:
             fraction = Fraction(decimal)
     except InvalidOperation:
         raise InputError(f"expected a number, got {value!r}") from None
-    if not _is_of_ordinary_size(fraction):
+    # 0 or a magnitude of 1e-40 … 1e40, without a division: many numbers are read
+    top, bottom = abs(fraction.numerator), fraction.denominator
+    if top and not (top <= bottom * _LARGEST and bottom <= top * _LARGEST):
         raise InputError(_magnitude(value))
     return fraction
-
-
-def _is_of_ordinary_size(fraction: Fraction) -> bool:
-    """True for 0 and magnitudes 1e-40 … 1e40, without a division: many numbers are read."""
-    top, bottom = abs(fraction.numerator), fraction.denominator
-    return top == 0 or (top <= bottom * _LARGEST and bottom <= top * _LARGEST)
 
 
 def _magnitude(value: object) -> str:

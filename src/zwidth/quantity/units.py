@@ -76,7 +76,10 @@ def _parse_text(value: str, unit: str, what: str) -> Exact:
     number, rest = _split(value, unit, what)
     try:
         fraction = Exact(number).fraction
-        given, wanted = unit_of(_without_count(rest, unit, what), _such_as(unit)), unit_of(unit)
+        # "counts" or "steps" may stand where these are counted
+        counted = unit == "1" and "count" in what and _COUNTED.fullmatch(rest)
+        such_as = "N*s/m" if unit in ("", "1") else unit
+        given, wanted = unit_of("" if counted else rest, such_as), unit_of(unit)
         if not any(map(str.isalpha, rest)):  # SI like a number; perhaps a ratio, such as 1/3000
             return Exact(fraction * given.scale)
         if not compatible(given, wanted):
@@ -92,15 +95,6 @@ def _parse_text(value: str, unit: str, what: str) -> Exact:
 
 
 _COUNTED = re.compile(r"(?:counts?|steps?|cpr|1)?\s*(?:(?:/|per )\s*(?:turn|rev))?")
-
-
-def _without_count(rest: str, unit: str, what: str) -> str:
-    """The unit without the word "counts" or "steps", which may stand where these are counted."""
-    return "" if unit == "1" and "count" in what and _COUNTED.fullmatch(rest) else rest
-
-
-def _such_as(unit: str) -> str:
-    return "N*s/m" if unit in ("", "1") else unit
 
 
 def _kind(rest: str, given: Unit, wanted: Unit) -> str:

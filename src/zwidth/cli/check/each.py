@@ -168,7 +168,10 @@ class EachDevice(Documented):
         yield from self._on_all()
         yield from self._against_the_measured()
         yield ""
-        yield Table(heads=self._heads(), rows=list(self._rows()), lefts=2)
+        unit = unit_text(spoken(GLOSSARY["stiffness"].unit_for(self.motion))[1])
+        more = (("shook from", "times"), (unit, "")) if self.measured else ((), ())
+        heads = [("", "", "passive up to", *more[0]), ("", "", unit, *more[1])]
+        yield Table(heads=heads, rows=list(self._rows()), lefts=2)
         yield ""
         yield from self._what_limits()
         yield from self._taken_as_nothing()
@@ -229,11 +232,6 @@ class EachDevice(Documented):
     def _times(self, name: str) -> float | None:
         limit, seen = self.largest(name), self.measured.get(name)
         return seen / limit if seen is not None and limit and isfinite(limit) else None
-
-    def _heads(self) -> list[tuple[str, ...]]:
-        unit = unit_text(spoken(GLOSSARY["stiffness"].unit_for(self.motion))[1])
-        more = (("shook from", "times"), (unit, "")) if self.measured else ((), ())
-        return [("", "", "passive up to", *more[0]), ("", "", unit, *more[1])]
 
     def _rows(self) -> Iterator[tuple[str, ...]]:
         for name in self.verdicts:

@@ -98,18 +98,14 @@ def command(found: Diagnosis | PairDiagnosis, arguments: argparse.Namespace) -> 
     for key, value in overrides(arguments).items():
         if key not in ("delay", of_law):
             words += [f"--{key.replace('_', '-')}", value]
-    words += (
-        _law_as_stated(change) if found.seen.stated is not None else _law_as_found(found.seen.law, change)
-    )
+    if found.seen.stated is None:
+        words += _law_as_found(found.seen.law, change)
+    elif change.parameter in ("stiffness", "damping"):
+        number = _with_unit(change.to, change.parameter, change.device.motion)
+        words += [_OPTIONS[change.parameter], number]
     if float(change.device.exact("delay")):
         words += ["--delay", shown(change.device.exact("delay"), "s", 6)]
     return typed(*words)
-
-
-def _law_as_stated(change: Change) -> list[str]:
-    if change.parameter not in ("stiffness", "damping"):
-        return []
-    return [_OPTIONS[change.parameter], _with_unit(change.to, change.parameter, change.device.motion)]
 
 
 def _law_as_found(law: Law, change: Change) -> list[str]:

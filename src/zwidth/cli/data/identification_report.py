@@ -50,7 +50,9 @@ def print_identified(found: Identification, in_full: bool = False) -> None:
     own = found.identified.findings[len(found.log.findings) :]
     better = [line for line in advice(found.identified, found.confidence) if "may be 0" not in line]
     with page() as out:
-        out.print(_headline(found))
+        wrong = found.identified.shows("wrong model")
+        badge = ("WRONG MODEL", "yellow") if wrong else ("IDENTIFIED", "green")
+        out.print(headline(*badge, _claim(found)))
         if not in_full:
             section(out, "the device", list(_numbers(found))[:2])
             section(out, "what the data show", _findings([f for f in own if f.kind in _WARNINGS]))
@@ -66,13 +68,6 @@ def print_identified(found: Identification, in_full: bool = False) -> None:
             section(out, "the environment", _checked(found, found.verdict))
         section(out, "to know it better", items(better))
         section(out, "the log", items(str(finding) for finding in found.log.findings))
-
-
-def _headline(found: Identification) -> Padding:
-    badge, colour = "IDENTIFIED", "green"
-    if found.identified.shows("wrong model"):
-        badge, colour = "WRONG MODEL", "yellow"
-    return headline(badge, colour, _claim(found))
 
 
 def _claim(found: Identification) -> str:
@@ -97,7 +92,8 @@ def _claim(found: Identification) -> str:
 
 
 def _log(found: Identification) -> Padding:
-    log = found.log
+    one, log = found.identified, found.log
+    means = f"{one.pulses} means over {shown(one.pulse_length, 's', 3)}"
     length = "rad" if log.motion == "rotary" else "m"
     runs = "" if log.runs == 1 else f" in {log.runs} runs"
     forces = ", ".join(name.replace("_", " ") for name in log.channels) or "no force, mass given"
@@ -105,14 +101,9 @@ def _log(found: Identification) -> Padding:
     rows = [
         ("log", f"{source_name(found.identified)}: {shown(log.duration, 's')}{runs}, {log.samples} samples"),
         ("samples", f"T = {shown(log.sample_period, 's', 6)}, Δ = {step}, {forces}"),
-        ("numbers rest on", _basis(found)),
+        ("numbers rest on", f"{one.strokes} strokes, {means}"),
     ]
     return below(grid(rows))
-
-
-def _basis(found: Identification) -> str:
-    one = found.identified
-    return f"{one.strokes} strokes, {one.pulses} means over {shown(one.pulse_length, 's', 3)}"
 
 
 def _numbers(found: Identification) -> Iterator[Table | Text]:

@@ -19,12 +19,10 @@ from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
 from zwidth.quantity.text import shown
-from zwidth.showing import Part
 
 if TYPE_CHECKING:
     from zwidth.cli.machine.network_plan import Plan
     from zwidth.machine.network.peer import Peer
-    from zwidth.machine.servo.port_run import PortRun
 
 FORMAT = "zwidth network 1"
 
@@ -64,17 +62,13 @@ def run(arguments: argparse.Namespace) -> int:
     typed = arguments.duration or _DURATION
     duration = read_number(typed, GLOSSARY["sample_period"], "--duration", bound="> 0", why="0 has no step")
     if arguments.plan:
-        print_report(_described(plan))
+        devices = (f"{name}: {held.describe()}" for name, held in plan.devices.items())
+        lines = (f"{name}: {line.channel}" for name, line in plan.lines.items())
+        print_report([*plan.cut.report(), "", *devices, *lines])
         return 0
     if arguments.run:
         return _one(plan, arguments.run, duration, arguments.json)
     return _all(plan, arguments.file, typed, arguments.json)
-
-
-def _described(plan: Plan) -> list[Part]:
-    devices = (f"{name}: {held.describe()}" for name, held in plan.devices.items())
-    lines = (f"{name}: {line.channel}" for name, line in plan.lines.items())
-    return [*plan.cut.report(), "", *devices, *lines]
 
 
 def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
@@ -90,7 +84,10 @@ def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
             print(f"{name}: nobody is at the other end of {line} yet; running all the same", file=sys.stderr)
         if real is not None:  # after the meeting: its own watchdog counts from here on
             real.reach()
-            print(f"{name}: {_about(real)}", file=sys.stderr)
+            silent = real.connection.on_silence
+            print(
+                f"{name}: {real.connection.describe()}; if nothing comes any more: {silent}", file=sys.stderr
+            )
         ended: list[int] = []
         for told in (signal.SIGTERM, signal.SIGINT):
             signal.signal(told, lambda *_: ended.append(1))
@@ -112,11 +109,6 @@ def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
         first, *rest = report.report()
         print_report([f"{name}: {first}", *rest, *([] if real is None else real.report().report())])
     return int(failed)
-
-
-def _about(real: PortRun) -> str:
-    connection = real.connection
-    return f"{connection.describe()}; if nothing comes any more: {connection.on_silence}"
 
 
 def _interrupted(*_: object) -> None:

@@ -283,7 +283,10 @@ def _device(row: Table) -> tuple[str, Held]:
         )
     device = load_device([row.text("source")], {})
     wait = Fraction(0)
-    if _flag(row, "hold_back"):
+    hold_back = row.values.get("hold_back", False)
+    if not isinstance(hold_back, bool):
+        raise InputError(f"{row.where('hold_back')}: hold_back is true or false, got {hold_back!r}")
+    if hold_back:
         device, wait = held_back(device)
     if "connection" in row.values:
         return row.text("name"), _real(row, device, wait)
@@ -314,13 +317,6 @@ def _real(row: Table, device: Device, wait: Fraction) -> Held:
     safety = read_safety(_inner(row, "safety", '{ force = "2 N" }', {}), device.motion)
     reached = Reached(connection, Placement.read(place, device.motion), safety, longest)
     return Held(device, None, reached, wait)
-
-
-def _flag(row: Table, key: str) -> bool:
-    found = row.values.get(key, False)
-    if not isinstance(found, bool):
-        raise InputError(f"{row.where(key)}: {key} is true or false, got {found!r}")
-    return found
 
 
 def _inner(row: Table, key: str, example: str, default: Mapping[str, Any] | None = None) -> Table:

@@ -36,7 +36,9 @@ _HEAD = "As zwidth new device was told. What was not measured is an estimate: zw
 def described(ask: Asker, path: Path) -> Written:
     """Ask about a device; its file, and what to do next."""
     motion = _motion(ask)
-    rows = [Row("motion", motion), _row(ask, inertia(motion), motion), _encoder(ask, motion)]
+    rows = [Row("motion", motion), _row(ask, inertia(motion), motion)]
+    answer, unknown = ask(encoder(motion)), Row("resolution", None, encoder(motion).unknown)
+    rows.append(unknown if answer is None else read_encoder(answer, motion))
     if motion == "rotary" and (radius := ask(RADIUS)) is not None:
         rows.append(Row(RADIUS.key, radius))
     rows += [_row(ask, question, motion) for question in loop(motion)]
@@ -62,12 +64,6 @@ def _row(ask: Asker, question: Question, motion: str) -> Row:
     if answer is None:
         return Row(question.key, None, question.unknown)
     return Row(question.key, with_unit(answer, unit_of_answer(question.key, motion)))
-
-
-def _encoder(ask: Asker, motion: str) -> Row:
-    question = encoder(motion)
-    answer = ask(question)
-    return Row("resolution", None, question.unknown) if answer is None else read_encoder(answer, motion)
 
 
 def _next(text: str, unknown: list[str], path: Path, motion: str, at_handle: str) -> list[str]:

@@ -125,7 +125,7 @@ def _bump_stop(asked: _Asked) -> str:
     depth, reason = _depth(asked, stiffness, hardening)
     asked.ask.finish("a bump stop")
     spring = NonlinearSpring.bump_stop(start, stiffness, hardening or 0, depth, _POINTS if hardening else 2)
-    law = f"f = ({stiffness}) u{_harder(hardening)}"
+    law = f"f = ({stiffness}) u{f' + ({hardening}) u^3' if hardening else ''}"
     return _spring(spring, f"A stop from {start} on, {law}, to u = {depth}{reason}", asked.motion)
 
 
@@ -146,10 +146,6 @@ def _depth(asked: _Asked, stiffness: str, hardening: str | None) -> tuple[str, s
     if answer is not None and answer != deepest:
         return with_unit(answer, unit), ""
     return deepest, f", where the force is {limit}, the largest of {asked.whose}"
-
-
-def _harder(hardening: str | None) -> str:
-    return f" + ({hardening}) u^3" if hardening else ""
 
 
 _FILES: dict[str, Callable[[_Asked], str]] = {"wall": _wall, "detents": _detents, "bump-stop": _bump_stop}

@@ -176,7 +176,9 @@ def print_pair_trace(trace: AnyTrace, in_full: bool = False) -> None:
         out.print(below(grid(_about_a_pair(trace))))
         out.print(below(grid(_measures_of_a_pair(trace))))
         out.print(Text("energy", style="bold"))
-        out.print(grid(_pair_energies(book)))
+        out.print(
+            grid((text, f"{v:.6g}" if text.endswith("times") else shown(v, "J")) for text, v in book.rows())
+        )
 
 
 def _pair_headline(book: PairLedger) -> Padding:
@@ -189,11 +191,6 @@ def _pair_headline(book: PairLedger) -> Padding:
     else:
         words = "No energy came out of this pair."
     return headline("touch", "blue", f"{words} That proves nothing of other hands: see zwidth pair.")
-
-
-def _pair_energies(book: PairLedger) -> Iterator[tuple[str, str]]:
-    for text, value in book.rows():
-        yield text, f"{value:.6g}" if text.endswith("times") else shown(value, "J")
 
 
 def _about_a_pair(trace: AnyTrace) -> Iterator[tuple[str, str]]:

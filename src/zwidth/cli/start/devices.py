@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from rich.table import Table
@@ -25,7 +25,7 @@ def run(arguments: argparse.Namespace) -> int:
     names = catalogue.names() if arguments.name is None else (arguments.name,)
     entries = [catalogue.entry(name) for name in names]
     if arguments.json:
-        print_json(entries_json(entries))
+        print_json(json.dumps({e.name: _document(e) for e in entries}, indent=2, ensure_ascii=False))
     else:
         print_entries(entries, in_full=arguments.name is not None)
     return 0
@@ -87,13 +87,8 @@ def _ranges(entry: Entry) -> Table:
     return grid
 
 
-def entries_json(entries: Iterable[Entry]) -> str:
-    """Devices by name; each value has its unit in its key, null where no source gives one."""
-    document = {entry.name: _document(entry) for entry in entries}
-    return json.dumps(document, indent=2, ensure_ascii=False)
-
-
 def _document(entry: Entry) -> dict[str, Any]:
+    """Each value has its unit in its key, null where no source gives one."""
     values = {
         _key(key, datum): {"value": datum.value, "source": datum.source}
         for key, datum in entry.values.items()

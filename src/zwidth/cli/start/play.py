@@ -41,7 +41,10 @@ def run(arguments: argparse.Namespace) -> int:
     save = target("--save", arguments.save, SUFFIXES, arguments.force)
     loops = _loops(arguments)
     page = play_page(loops).encode()
-    place = save or _temporary()
+    if (place := save) is None:
+        handle, name = tempfile.mkstemp(prefix="zwidth-play-", suffix=".html")
+        os.close(handle)
+        place = Path(name)
     with writing_whole(place) as file:
         file.write(page)
     print_text(_outcomes(loops))
@@ -57,12 +60,6 @@ def _outcomes(loops: Sequence[Played]) -> str:
         return f"{loops[0].verdict.outcome.upper()}: {loops[0].name}"
     found = Counter(loop.verdict.outcome for loop in loops)
     return f"{len(loops)} loops to play: " + ", ".join(f"{count} {name}" for name, count in found.items())
-
-
-def _temporary() -> Path:
-    handle, name = tempfile.mkstemp(prefix="zwidth-play-", suffix=".html")
-    os.close(handle)
-    return Path(name)
 
 
 def _loops(arguments: argparse.Namespace) -> list[Played]:

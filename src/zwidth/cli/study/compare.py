@@ -61,10 +61,12 @@ def run(arguments: argparse.Namespace) -> int:
     loop, radius = _touched(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.show.with_bar import compare
+    from zwidth.study.bench.adversary import FASTEST
     from zwidth.study.bench.bench import standard_laws
 
     yours = {} if own is loop.environment else {YOURS: own}
-    fastest = _speed(arguments.fastest)
+    typed = arguments.fastest
+    fastest = FASTEST if typed is None else float(parse_number(typed, "m/s", "fastest"))
     if radius is None:
         laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
         found = compare(loop.device, loop.environment, laws, fastest=fastest)
@@ -131,12 +133,6 @@ def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Pat
     found = compare(schemes(pair))
     give_out(found, save, None, arguments.json)
     return 0
-
-
-def _speed(typed: str | None) -> float:
-    from zwidth.study.bench.adversary import FASTEST
-
-    return FASTEST if typed is None else float(parse_number(typed, "m/s", "fastest"))
 
 
 def _chosen(

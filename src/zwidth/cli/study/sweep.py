@@ -33,8 +33,6 @@ from zwidth.model.specification.table import COMMAND_LINE, plain, quoted
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from zwidth.model.device import Device
     from zwidth.model.environment import Environment
     from zwidth.model.specification.table import Table
@@ -117,19 +115,15 @@ def run(arguments: argparse.Namespace) -> int:
             print_message(f"{plain(arguments.save, 200)} keeps what is finished; the same command goes on")
         raise
     if plot is not None:
-        _draw(found, plot)
+        from zwidth.show.plots import save_sweep  # matplotlib takes its time
+
+        save_sweep(found, plot, overwrite=True)
     from zwidth.cli.study.sweep_report import report, summary
     from zwidth.quantity.text import to_json
 
     kept = None if arguments.save is None else Path(arguments.save)
     print_found(arguments.json, lambda: to_json(summary(found)), partial(report, found), kept, plot)
     return 0
-
-
-def _draw(found: xr.Dataset, plot: Path) -> None:
-    from zwidth.show.plots import save_sweep  # matplotlib takes its time
-
-    save_sweep(found, plot, overwrite=True)
 
 
 def _varied(typed: list[str] | None) -> dict[str, str]:

@@ -104,9 +104,10 @@ def prepare_pair(
         )
     rate = Exact(pair.own_readings / pair.sample_period)
     devices = [device.replace(rate=rate) for device in (pair.leader, pair.follower)]
+    hands = [one if isinstance(one, Operator) else NOBODY for one in holders]
     frames = [
-        frame_of(device, _hand(holder), duration, amplifier, None, points_per_sample)
-        for device, holder in zip(devices, holders, strict=True)
+        frame_of(device, hand, duration, amplifier, None, points_per_sample)
+        for device, hand in zip(devices, hands, strict=True)
     ]
     starts = _starts(frames, holders)
     arms = [
@@ -140,10 +141,6 @@ def _wall(name: str, holder: object) -> Wall | None:
     if certain(holder.damping, "damping") < 0:
         raise InputError(f"{name}: a real wall has no damping below 0: it would give out energy itself")
     return holder
-
-
-def _hand(holder: Holder) -> Operator:
-    return holder if isinstance(holder, Operator) else NOBODY
 
 
 def _starts(frames: list[Frame], holders: tuple[Holder, Holder]) -> list[float]:

@@ -110,7 +110,7 @@ class FrictionCurve(Parametric):
                 f"damping must be from 0 to {float(limit):g}, got {float(b):g}: a larger one crosses the "
                 "friction curve or rises faster than its last chord"
             )
-        return Exact(self._coulomb(b))
+        return Exact(min(f.fraction - b * v.fraction for v, f in zip(self.speeds, self.forces, strict=True)))
 
     def best(self, sample_period: RealLike, resolution: RealLike) -> FrictionModel:
         """The model that proves the stiffest spring wall, K = min(2b/T, 2f_c/Δ).
@@ -137,9 +137,6 @@ class FrictionCurve(Parametric):
                 b = period * (f0 + slope * b0) / (delta + slope * period)
                 return FrictionModel(Exact(f0 - slope * (b - b0)), Exact(b))
         return FrictionModel(Exact(edge[-1][0]), Exact(edge[-1][1]))
-
-    def _coulomb(self, b: Fraction) -> Fraction:
-        return min(f.fraction - b * v.fraction for v, f in zip(self.speeds, self.forces, strict=True))
 
     def _edge(self) -> list[tuple[Fraction, Fraction]]:
         """The corners (f_c, b): the lower envelope of the lines f_i − b v_i, b rising."""

@@ -59,7 +59,7 @@ def _sampled(
         num, den = _transfer(phi, flint.arb_mat(start), output)
         # h(kT) = C Φᵏ B is one sample ahead of C (zI − Φ)⁻¹ B: times z
         num = [flint.arb(0), *num] if held else [*num, flint.arb(0)]
-        return _with_direct(num, den, direct), den
+        return [n + ball(direct) * d for n, d in zip(num, den, strict=True)], den
 
     return _rounded(compute, denominator)
 
@@ -131,10 +131,6 @@ def _transfer(phi: Any, start: Any, output: list[Fraction]) -> tuple[Balls, Ball
     den = phi.charpoly().coeffs()[::-1]
     num = [sum((den[i] * response[j - i] for i in range(j + 1)), flint.arb(0)) for j in range(len(output))]
     return num, den
-
-
-def _with_direct(num: Balls, den: Balls, direct: Fraction) -> Balls:
-    return [n + ball(direct) * d for n, d in zip(num, den, strict=True)]
 
 
 def _with_roots(polynomial: Polynomial, at_1: int, at_minus_1: int) -> Balls:

@@ -46,7 +46,9 @@ def read_system(system: Any) -> LinearSystem:
     elif hasattr(system, "num") and hasattr(system, "den"):
         num, den = (_single(getattr(system, name), name) for name in ("num", "den"))
     elif all(hasattr(system, name) for name in ("zeros", "poles", "gain")):
-        num, den = _from_roots(system)
+        gain = number_of(system.gain, "gain")
+        num = tuple(gain * c for c in _with_roots(system.zeros, "zeros"))
+        den = _with_roots(system.poles, "poles")
     else:
         raise InputError(
             f"a system of type {type(system).__name__} is not read; give a TransferFunction, StateSpace or "
@@ -70,16 +72,13 @@ def time_of(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], F
     """
     dt = renamed(system).dt
     if dt is None:
-        return ("continuous" if _of_scipy(system) else "unsaid"), None
+        of_scipy = any(base.__module__.split(".")[0] == "scipy" for base in type(system).__mro__)
+        return ("continuous" if of_scipy else "unsaid"), None
     if dt is True:
         return "discrete", None
     if dt == 0:
         return "continuous", None
     return "discrete", number_of(dt, "dt")
-
-
-def _of_scipy(system: object) -> bool:
-    return any(base.__module__.split(".")[0] == "scipy" for base in type(system).__mro__)
 
 
 def number_of(value: Any, key: str) -> Fraction:
@@ -140,12 +139,6 @@ def characteristic(matrix: list[list[Fraction]]) -> Polynomial:
     entries = [[flint.fmpq(x.numerator, x.denominator) for x in row] for row in matrix]
     coefficients = flint.fmpq_mat(entries).charpoly().coeffs()
     return tuple(Fraction(int(c.p), int(c.q)) for c in coefficients[::-1])
-
-
-def _from_roots(system: Any) -> tuple[Polynomial, Polynomial]:
-    gain = number_of(system.gain, "gain")
-    num = tuple(gain * c for c in _with_roots(system.zeros, "zeros"))
-    return num, _with_roots(system.poles, "poles")
 
 
 def _with_roots(roots: Any, key: str) -> Polynomial:

@@ -68,7 +68,11 @@ class DualRate(RenderingLaw):
     updates: Literal["continuous", "jump"] = word("continuous", "jump")
 
     def numbers(self, at: LoopContext) -> list[float]:
-        slope = _paid_slope(at) if self.slope is None else float(self.slope)
+        if self.slope is None:
+            steepest = 2 * damping_per_sample(at, "a local spring without slope")
+            slope = min(at.stiffness, steepest) if at.stiffness > 0.0 else steepest
+        else:
+            slope = float(self.slope)
         limit = at.device.force_limit
         return [
             float(self.samples),
@@ -99,11 +103,6 @@ class DualRate(RenderingLaw):
         parts = [f"updated every {self.samples} samples"]
         parts += [] if self.slope is None else [f"slope {self.with_unit('slope', motion)}"]
         return f"local spring ({', '.join([*parts, f'{self.updates} updates'])})"
-
-
-def _paid_slope(at: LoopContext) -> float:
-    steepest = 2 * damping_per_sample(at, "a local spring without slope")
-    return min(at.stiffness, steepest) if at.stiffness > 0.0 else steepest
 
 
 @compiled

@@ -261,7 +261,9 @@ def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[
             hint = _CHECKED_BY.get(key) or suggestion(key, kinds)
             raise InputError(f"{name}: there is no table or key {quoted(key)} in a specification; {hint}")
         if key == "law":
-            content[key] = _row_of_laws(value, name)
+            if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
+                raise InputError(f"{name}: laws are tables in a row, each with [[law]] above its keys")
+            content[key] = {ROW: value}
         elif not isinstance(value, dict):
             raise InputError(f"{name}: {key} is a table, written [{key}] above its keys")
     if not content:
@@ -282,12 +284,6 @@ _CHECKED_BY = {
     **dict.fromkeys(PAIR_TABLES, "it is of two arms that follow each other: zwidth pair decides them"),
 }
 """Who reads a table that a command does not."""
-
-
-def _row_of_laws(value: object, name: str) -> dict[str, object]:
-    if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
-        raise InputError(f"{name}: laws are tables in a row, each with [[law]] above its keys")
-    return {ROW: value}
 
 
 _READ_BY = {

@@ -23,6 +23,7 @@ from zwidth.model.specification.environments import ELEMENTS, TYPES, build_envir
 from zwidth.model.specification.laws import with_laws
 from zwidth.model.specification.load import KEYS, pair_of
 from zwidth.model.specification.read import PAIR_TABLES, WITH_LAWS, Specification, specified, tables_of
+from zwidth.model.specification.values import FILTERS
 from zwidth.quantity.exact import Exact, Interval, as_parameter
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of
@@ -128,7 +129,8 @@ def _written(thing: object, kinds: Mapping[str, Kind], motion: str) -> dict[str,
     for key, kind in kinds[name].keys.items():
         value = getattr(thing, key)
         if kind.form == "branches":
-            values[key] = [_branch(branch, motion) for branch in value]
+            units = [GLOSSARY[f"branch_{own}"].unit_for(motion) for own in ("stiffness", "damping")]
+            values[key] = [list(map(quantity_text, branch, units)) for branch in value]
         elif kind.form == "elements":
             values[key] = [_written(element, ELEMENTS, motion) for element in value]
         elif kind.form in _INNER:
@@ -150,22 +152,18 @@ def _value(value: Any, unit: str) -> object:
     return value if isinstance(value, str | bool) else quantity_text(value, unit)
 
 
-def _branch(branch: Any, motion: str) -> list[object]:
-    units = (GLOSSARY[key].unit_for(motion) for key in ("branch_stiffness", "branch_damping"))
-    return [quantity_text(value, unit) for value, unit in zip(branch, units, strict=True)]
+_FILTERS: Mapping[type, str] = {
+    BackwardDifference: "backward-difference", Window: "window", OnePole: "one-pole",
+    VelocityFilter: "filter",
+}  # fmt: skip
 
 
 def _filter(estimate: object) -> dict[str, object]:
-    if isinstance(estimate, BackwardDifference):
-        return {"type": "backward-difference"}
-    if isinstance(estimate, Window):
-        return {"type": "window", "samples": str(estimate.samples)}
-    if isinstance(estimate, OnePole):
-        return {"type": "one-pole", "time_constant": quantity_text(estimate.time_constant, "s")}
-    if isinstance(estimate, VelocityFilter):
-        sides = {key: _value(getattr(estimate, key), "1") for key in ("numerator", "denominator")}
-        return {"type": "filter", **sides}
-    raise InputError(f"a specification has no {type(estimate).__name__}")
+    name = _FILTERS.get(type(estimate))
+    if name is None:
+        raise InputError(f"a specification has no {type(estimate).__name__}")
+    units = {key: "s" if key == "time_constant" else "1" for key in FILTERS[name] if key != "cutoff"}
+    return {"type": name, **{key: _value(getattr(estimate, key), unit) for key, unit in units.items()}}
 
 
 def written_pair(pair: Pair) -> str:

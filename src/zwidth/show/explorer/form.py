@@ -89,7 +89,8 @@ class Form(Told):
                 if event.get("kind") in _SETS:
                     self.refused.pop(path, None)
             except InputError as error:
-                here = event.get("kind") in _SETS and path in self._paths()
+                paths = {one["path"] for group in self.groups for one in group["controls"]}
+                here = event.get("kind") in _SETS and path in paths
                 answer = {"error": "" if here else str(error)}
                 if here:
                     self.refused[path] = _refusal(str(error), path, event.get("before"))
@@ -102,9 +103,6 @@ class Form(Told):
                 soon(partial(heed, change.new))
 
         self.param.watch(on_event, "event")
-
-    def _paths(self) -> set[str]:
-        return {one["path"] for group in self.groups for one in group["controls"]}
 
 
 _SETS = ("move", "typed", "choose")
@@ -216,12 +214,14 @@ def groups_of(state: State, name: str, controls: Sequence[Control]) -> list[dict
         for number, law in enumerate(state.laws, 1)
         if under(f"law.{number}.")
     ]
+    on = {str(law["type"]) for law in state.laws}
+    boxes = [flag(f"with.{key}", _spoken(key), law.meaning, key in on) for key, law in LAWS.items()]
     return [
         group("Device", [_devices(name), upload("file", "or a TOML file"), *under("device.")]),
         group("More of the device", under("device.", more=True), folded=True),
         group("Environment", [_environments(state), *under("environment.")]),
         *laws,
-        group("Laws in the chain", _boxes(state), folded=True),
+        group("Laws in the chain", boxes, folded=True),
         group("Take it with you", [button(key, text) for key, text in DOWNLOADS.items()]),
     ]
 
@@ -241,11 +241,6 @@ def _environments(state: State) -> dict[str, Any]:
     options = [(name, _spoken(name)) for name in TYPES]
     chosen = str(state.environment["type"])
     return choice("environment", "kind", options, chosen, TYPES[chosen].meaning)
-
-
-def _boxes(state: State) -> list[dict[str, Any]]:
-    on = {str(law["type"]) for law in state.laws}
-    return [flag(f"with.{name}", _spoken(name), law.meaning, name in on) for name, law in LAWS.items()]
 
 
 def _spoken(name: str) -> str:

@@ -103,23 +103,14 @@ class CriterionPicture:
             alpha=0.25,
             legend_label="too little",
         )
-        self.figure.line(
-            "frequency",
-            "needed",
-            source=self._curve,
-            color=BLUE,
-            line_width=2,
-            legend_label="asked of the device",
-        )
-        self.figure.line(
-            "frequency",
-            "has",
-            source=self._curve,
-            color=GREY,
-            line_width=2,
-            line_dash="dashed",
-            legend_label="device damping b",
-        )
+        for name, colour, dash, text in (
+            ("needed", BLUE, "solid", "asked of the device"),
+            ("has", GREY, "dashed", "device damping b"),
+        ):
+            self.figure.line(
+                "frequency", name, source=self._curve, color=colour, line_width=2, line_dash=dash,
+                legend_label=text,
+            )  # fmt: skip
         self.figure.scatter("frequency", "needed", source=self._peak, size=9, color=RED)
         self.figure.add_layout(Line(location=0, dimension="width", line_color=GREY, line_alpha=0.5))
         legend_above(self.figure)

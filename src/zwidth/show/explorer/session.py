@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
 from itertools import count
 from typing import Any
 
@@ -119,13 +118,19 @@ class Session:
         state = self.state
 
         def come(answer: Answer) -> None:
+            self._later(state, lambda: then(answer))
+
+        self._workers.submit(self._asker, kind, answered, (work, state), come)
+
+    def _later(self, state: State, work: Callable[[], None]) -> None:
+        """Have something done when what goes before has been sent; of an older state nothing is."""
+
+        def done() -> None:
             if state is self.state:
                 with answers_in(*state.angles):
-                    then(answer)
+                    work()
 
-        self._workers.submit(
-            self._asker, kind, answered, (work, state), lambda answer: self._soon(partial(come, answer))
-        )
+        self._soon(done)
 
     # what is moved
 
@@ -175,7 +180,7 @@ class Session:
         else:
             self._controls = kept
         self._show(judged)
-        self._soon(partial(self._follow_if, state))
+        self._later(state, self._follow)
         if redraw:
             self._open.released()
 
@@ -222,21 +227,11 @@ class Session:
         labels = {path: one.label for path, one in self._controls.items()}
         return " and ".join(labels.get(path, path) for path in self.form.refused)
 
-    def _follow_if(self, state: State) -> None:
-        if state is self.state:
-            with answers_in(*state.angles):
-                self._follow()
-
     def _follow(self) -> None:
         """Numbers, advice, scope and the line with the limit; a moment later the picture that is open."""
         self.details.html = str(details(self.verdict))
         self.badge.html = str(badge(self.verdict, self._note, self.state.begun))
-        self._soon(partial(self._draw_if, self.state))
-
-    def _draw_if(self, state: State) -> None:
-        if state is self.state:
-            with answers_in(*state.angles):
-                self._open.moved()
+        self._later(self.state, lambda: self._open.moved())
 
     # files
 

@@ -111,11 +111,8 @@ def details(verdict: Verdict | None) -> Html:
     """The numbers, what to change, and what the claim covers."""
     if verdict is None:
         return join()
-    return join(_numbers_of(verdict), _advice(verdict), _scope(verdict))
-
-
-def _numbers_of(verdict: Verdict) -> Html:
-    return element("div", Table(rows=verdict.rows()).html, **{"class": "numbers"})
+    numbers = element("div", Table(rows=verdict.rows()).html, **{"class": "numbers"})
+    return join(numbers, _advice(verdict), Lines(verdict.small_print(), "What this covers").html)
 
 
 def _advice(verdict: Verdict) -> Html:
@@ -124,10 +121,6 @@ def _advice(verdict: Verdict) -> Html:
     title, *lines = verdict.advised()
     heading = element("h3", f"{str(title)[:1].upper()}{str(title)[1:]}")
     return join(heading, *(line.html for line in lines if isinstance(line, Lines)))
-
-
-def _scope(verdict: Verdict) -> Html:
-    return Lines(verdict.small_print(), "What this covers").html
 
 
 def badge(verdict: Verdict | None, note: str = "", begun: Mapping[str, str] = MappingProxyType({})) -> Html:

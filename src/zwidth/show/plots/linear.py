@@ -84,7 +84,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
     heading(axes, f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
 
 
-def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float], list[float]]:
+def refined_curve(verdict: LinearVerdict) -> tuple[list[float], list[float]]:
     """(frequencies [Hz], required damping) with points crowding towards the tightest frequency.
 
     However narrow the peak, its top and both its sides are among them.
@@ -93,7 +93,7 @@ def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float
     nyquist, peak = 0.5 / float(loop.period), verdict.critical_frequency
     steps = [nyquist * 10 ** (-10 * k / _NEAR) for k in range(_NEAR)]
     near = [f for s in steps for f in (peak - s, peak + s) if 0 < f < nyquist]
-    known = dict(zip(*verdict.curve(points), strict=True))
+    known = dict(zip(*verdict.curve(400), strict=True))
     needs = loop.required_dampings_at([cos(pi * f / nyquist) for f in near])
     known.update(zip(near, needs, strict=True))
     known[min(peak, nyquist)] = verdict.budget.required

@@ -319,7 +319,8 @@ def _maps(found: xr.Dataset, name: str) -> Figure:
         else:
             heading(one, str(found.attrs["loop"]), parse_math=False)
     if name == "outcome":
-        legend_of_all(figure, _patches(found))
+        there = set(np.unique(found["outcome"].values).tolist())
+        legend_of_all(figure, [Patch(facecolor=_shade(word), label=word) for word in TOLD if word in there])
     else:
         bar = figure.colorbar(drawn, ax=list(axes))
         bar.set_label(_label(found[name], found[name].attrs.get("units", "")))
@@ -351,11 +352,6 @@ def _outcomes(axes: Axes, x: Any, y: Any, words: Any) -> Any:
     colours = ListedColormap(["#ffffff", *map(_shade, known)])
     norm = BoundaryNorm(np.arange(len(known) + 2) - 0.5, colours.N)
     return axes.pcolormesh(x, y, places, cmap=colours, norm=norm, shading="nearest")
-
-
-def _patches(found: xr.Dataset) -> list[Patch]:
-    there = set(np.unique(found["outcome"].values).tolist())
-    return [Patch(facecolor=_shade(word), label=word) for word in TOLD if word in there]
 
 
 def _shade(outcome: str) -> str:

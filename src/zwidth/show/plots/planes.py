@@ -86,8 +86,10 @@ def draw_plane(
     y = ends_around(sigma, at_limit[1], *(place_at_limit(other)[1] for other in others))
     _regions(axes, x, y, sigma > beta)
     _mark_others(axes, others)
-    if with_catalogue:
-        _count_unknown(axes)
+    left_out = len(catalogue.names()) - len(list(complete_devices())) if with_catalogue else 0
+    if left_out:
+        unknown = low_index("b, T, f_c or Δ is unpublished")
+        note(axes, f"{left_out} devices of the catalogue have no place here: {unknown}.")
     _line(axes, device, (beta * k, sigma * k), x, y)
     passive = point.region == "globally stable"
     text = f"{shown_name(device)}, K = {quantity_text(k, 'stiffness', device.motion)}: {point.region}"
@@ -185,13 +187,6 @@ def _mark_others(axes: Axes, others: list[Device]) -> None:
             f"{other.name} at {k}",
             place_at_limit(other), (7, 5), textcoords="offset points", fontsize=SMALL, color=GREY,
         )  # fmt: skip
-
-
-def _count_unknown(axes: Axes) -> None:
-    left_out = len(catalogue.names()) - len(list(complete_devices()))
-    if left_out:
-        unknown = low_index("b, T, f_c or Δ is unpublished")
-        note(axes, f"{left_out} devices of the catalogue have no place here: {unknown}.")
 
 
 def complete_devices() -> Iterator[Device]:

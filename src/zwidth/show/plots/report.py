@@ -168,10 +168,8 @@ def limit_figure(bracket: Bracket) -> Figure:
     if bracket.storage is None and bracket.witness is None:
         raise InputError("there is neither a storage function nor a motion to draw")
     figure = new_figure(height=5.0)
-    sides = [
-        *([_proved] if bracket.storage is not None else []),
-        *([_refuted] if bracket.witness is not None else []),
-    ]
+    both = ((_proved, bracket.storage), (_refuted, bracket.witness))
+    sides = [draw for draw, found in both if found is not None]
     grid = figure.add_gridspec(1, len(sides))
     for k, draw in enumerate(sides):
         draw(figure, grid[k], bracket)

@@ -5,7 +5,8 @@ Nodes stand from left to right by how many elements are between them and the por
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Mapping
 
 import numpy as np
 from matplotlib import rc_context
@@ -63,14 +64,15 @@ def draw_scene(axes: Axes, scene: Scene, motion: str = "linear") -> None:
     places = placed(scene)
     labelled = len(scene.elements) <= _MOST_LABELS
     beside: dict[frozenset[str], int] = {}
-    many = {key: sum(frozenset(e.nodes) == key for e in _joining(scene)) for key in _pairs(scene)}
+    many = Counter(frozenset(e.nodes) for e in _joining(scene))
     for element in _joining(scene):
         key = frozenset(element.nodes)
         turn = beside.get(key, 0)
         beside[key] = turn + 1
         begin, end, leads = _ends(element, places, turn, many[key])
         colour = _COLOUR[element.symbol]
-        for line in [*leads, *_DRAWN[element.symbol](begin, end)]:
+        strokes = (_along(begin, end, shape) for shape in _DRAWN[element.symbol])
+        for line in [*leads, *strokes]:
             axes.plot(line[:, 0], line[:, 1], color=colour, lw=1.4, solid_capstyle="butt")
         if GROUND in element.nodes:
             _ground(axes, end)
@@ -122,10 +124,6 @@ def _joining(scene: Scene) -> list[Element]:
     return [e for e in scene.elements if e.reflection >= 0]
 
 
-def _pairs(scene: Scene) -> set[frozenset[str]]:
-    return {frozenset(e.nodes) for e in _joining(scene)}
-
-
 def _ends(
     element: Element, places: Mapping[str, tuple[float, float]], turn: int, many: int
 ) -> tuple[Array, Array, list[Array]]:
@@ -157,47 +155,27 @@ def _shape(*points: tuple[float, float]) -> Array:
     return np.array(points)
 
 
-def _spring(begin: Array, end: Array) -> list[Array]:
-    teeth = [(0.26 + 0.06 * i, 0.06 * (-1) ** i) for i in range(9)]
-    return [_along(begin, end, _shape((0, 0), (0.22, 0), *teeth, (0.78, 0), (1, 0)))]
+_SPRING = [
+    _shape((0, 0), (0.22, 0), *((0.26 + 0.06 * i, 0.06 * (-1) ** i) for i in range(9)), (0.78, 0), (1, 0))
+]
 
+_DRAWN: Mapping[str, list[Array]] = {
+    "K": _SPRING,
+    "N": _SPRING,
+    "B": [  # the cup, its rod and its plate
+        _shape((0.42, 0.08), (0.62, 0.08), (0.62, -0.08), (0.42, -0.08)), _shape((0, 0), (0.52, 0)),
+        _shape((0.52, 0.06), (0.52, -0.06)), _shape((0.62, 0), (1, 0)),
+    ],
+    "C": [
+        _shape((0, 0), (0.47, 0)), _shape((0.47, 0.1), (0.47, -0.1)),
+        _shape((0.55, 0.1), (0.55, -0.1)), _shape((0.55, 0), (1, 0)),
+    ],
+    "F": [_shape((0, 0.03), (0.6, 0.03)), _shape((0.4, -0.03), (1, -0.03))],
+    "r": [_shape((0, h), (1, h)) for h in (-0.02, 0.02)],
+    "w": [_shape((low, 0), (high, 0)) for low, high in np.linspace(0, 1, 12).reshape(-1, 2)],
+}  # fmt: skip
+"""Of each symbol the strokes, drawn from (0, 0) to (1, 0)."""
 
-def _damper(begin: Array, end: Array) -> list[Array]:
-    cup = _shape((0.42, 0.08), (0.62, 0.08), (0.62, -0.08), (0.42, -0.08))
-    rod, plate = _shape((0, 0), (0.52, 0)), _shape((0.52, 0.06), (0.52, -0.06))
-    return [_along(begin, end, s) for s in (cup, rod, plate, _shape((0.62, 0), (1, 0)))]
-
-
-def _contact(begin: Array, end: Array) -> list[Array]:
-    left, right = _shape((0.47, 0.1), (0.47, -0.1)), _shape((0.55, 0.1), (0.55, -0.1))
-    return [
-        _along(begin, end, s) for s in (_shape((0, 0), (0.47, 0)), left, right, _shape((0.55, 0), (1, 0)))
-    ]
-
-
-def _friction(begin: Array, end: Array) -> list[Array]:
-    upper, lower = _shape((0, 0.03), (0.6, 0.03)), _shape((0.4, -0.03), (1, -0.03))
-    return [_along(begin, end, s) for s in (upper, lower)]
-
-
-def _bar(begin: Array, end: Array) -> list[Array]:
-    return [_along(begin, end, _shape((0, h), (1, h))) for h in (-0.02, 0.02)]
-
-
-def _line(begin: Array, end: Array) -> list[Array]:
-    pieces = np.linspace(0, 1, 12).reshape(-1, 2)
-    return [_along(begin, end, _shape((low, 0), (high, 0))) for low, high in pieces]
-
-
-_DRAWN: Mapping[str, Callable[[Array, Array], list[Array]]] = {
-    "K": _spring,
-    "N": _spring,
-    "B": _damper,
-    "C": _contact,
-    "F": _friction,
-    "r": _bar,
-    "w": _line,
-}
 _COLOUR = {"K": BLUE, "N": PURPLE, "B": GREEN, "C": RED, "F": ORANGE, "r": BLACK, "w": GREY}
 
 

@@ -181,12 +181,15 @@ def draw_links(figure: Figure, comparison: Any) -> None:
     names = [str(name) for name in comparison.scores["port"].values]
     grid = figure.add_gridspec(len(names), 3, width_ratios=(1.5, 1.2, 1.0))
     worst = figure.add_subplot(grid[:, 2])
-    factor, unit = _length(comparison)
+    first = next(iter(comparison.traces.values()))["stroke"]["position"]
+    factor, unit = scale([float(np.abs(first.values[0]).max())], first.attrs["units"])
     for row, name in enumerate(names):
         trace = comparison.traces[name]["stroke"]
         paths, energy = figure.add_subplot(grid[row, 0]), figure.add_subplot(grid[row, 1])
         _paths(paths, trace, factor)
-        _link_energy(energy, trace)
+        time, work = trace["time"].values, 1e3 * trace["hand_work"].values.sum(axis=0)
+        energy.plot(time, work, color=PURPLE, lw=1.2, label="put in by both hands; below 0, taken out")
+        energy.axhline(0, color=GREY, lw=0.6, zorder=0)
         paths.set_ylabel(with_unit("x", unit), fontsize=SMALL)
         energy.set_ylabel(with_unit("W", "mJ"), fontsize=SMALL)
         paths.set_title(name, fontsize=SMALL, pad=2)
@@ -203,11 +206,6 @@ def draw_links(figure: Figure, comparison: Any) -> None:
     page_heading(figure, printable(comparison.schedule.describe()))
 
 
-def _length(comparison: Any) -> tuple[float, str]:
-    first = next(iter(comparison.traces.values()))["stroke"]["position"]
-    return scale([float(np.abs(first.values[0]).max())], first.attrs["units"])
-
-
 def _paths(axes: Axes, trace: Any, factor: float) -> None:
     time = trace["time"].values
     leader, follower = trace["position"].values * factor
@@ -217,12 +215,6 @@ def _paths(axes: Axes, trace: Any, factor: float) -> None:
             time, np.clip(path, -most, most), color=colour, ls=line, lw=1.2, label=f"position x of the {name}"
         )
     axes.axhline(0, color=_GUIDE, lw=0.6, zorder=0)
-
-
-def _link_energy(axes: Axes, trace: Any) -> None:
-    time, work = trace["time"].values, 1e3 * trace["hand_work"].values.sum(axis=0)
-    axes.plot(time, work, color=PURPLE, lw=1.2, label="put in by both hands; below 0, taken out")
-    axes.axhline(0, color=GREY, lw=0.6, zorder=0)
 
 
 def _worst(axes: Axes, scores: Any, names: list[str]) -> None:

@@ -64,7 +64,8 @@ def trace_figure(trace: xr.Dataset) -> Figure:
     draw_position(above, trace)
     draw_forces(middle, trace)
     draw_energies(below, trace)
-    page_heading(figure, _title(trace))
+    loop = f"{trace.attrs['device']}, {as_written(trace.attrs['environment'])}"
+    page_heading(figure, printable(f"{loop}\n{as_written(trace.attrs['operator'])}"))
     below.set_xlabel(timed(trace)[1])
     return figure
 
@@ -181,13 +182,6 @@ def timed(trace: xr.Dataset) -> tuple[Array, str]:
     time = trace["time"].values
     factor, text = axis([float(time[-1])], "time")
     return time * factor, text
-
-
-def _title(trace: xr.Dataset) -> str:
-    about = trace.attrs
-    return printable(
-        f"{about['device']}, {as_written(about['environment'])}\n{as_written(about['operator'])}"
-    )
 
 
 ARMS = {"leader": (BLUE, "-"), "follower": (ORANGE, "--")}

@@ -57,7 +57,7 @@ def contents(verdict: Answer, provenance: Provenance | None = None) -> Contents:
     """What a report of a verdict says; `provenance` by default what can be seen of the loop."""
     if provenance is None:
         provenance = of_verdict(verdict) if isinstance(verdict, Verdict) else Provenance(())
-    pieces = _examined(verdict)
+    pieces = [_Examined(name, one.describe(), verify(one.to_dict())) for name, one in _pieces(verdict)]
     title = _title(verdict, provenance)
     return Contents(
         title,
@@ -171,11 +171,6 @@ class _Examined(NamedTuple):
     name: str
     shows: str
     found: Verified
-
-
-def _examined(verdict: Answer) -> list[_Examined]:
-    """Every piece of the evidence, read by the checker."""
-    return [_Examined(name, piece.describe(), verify(piece.to_dict())) for name, piece in _pieces(verdict)]
 
 
 def _checked(verdict: Answer, pieces: Sequence[_Examined]) -> Iterator[Part]:
@@ -313,18 +308,12 @@ def _what_was_read(pieces: Sequence[_Examined]) -> Iterator[Part]:
     """A table for each piece of evidence; of two that say the same, one."""
     told: list[Rows] = []
     for piece in pieces:
-        rows = _rows_read(piece)
+        rows = tuple((in_words(r.name), as_read(r.text, r.unit)) for r in piece.found.rows if not r.told)
         if 0 < len(rows) <= _MOST_ROWS and rows not in told:
             told.append(rows)
             yield Table(rows=rows, caption=piece.name)
     if told:
         yield f"Rounded to {_DIGITS} digits; the proof is about the exact numbers, which stand in {NAME}."
-
-
-def _rows_read(piece: _Examined) -> Rows:
-    return tuple(
-        (in_words(row.name), as_read(row.text, row.unit)) for row in piece.found.rows if not row.told
-    )
 
 
 def as_read(text: str, unit: str) -> str:

@@ -18,7 +18,7 @@ from zwidth.passivity.result import Answer
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.text import shown
 from zwidth.show.report.contents import NAME, Contents, Section
-from zwidth.showing import Headline, Html, Lines, Part, Picture, Table, data_uri, element, void
+from zwidth.showing import Html, Lines, Part, Picture, Table, data_uri, element, void
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 
@@ -76,21 +76,18 @@ def page(said: Contents) -> str:
 
 def _main(said: Contents) -> Html:
     drawn = pictures(said.answer)
+    style = f"background:{said.verdict.colour}"
+    badge = element("strong", said.verdict.word, **{"class": "badge", "style": style})
     return element(
         "main",
         element("p", "Report of zwidth", **{"class": "made"}),
         element("h1", said.title),
-        _verdict(said.verdict),
+        element("p", badge, said.verdict.claim, **{"class": "claim"}),
         *map(_section, said.before_pictures),
         *([_section(Section("Figures", drawn))] if drawn else []),
         *map(_section, said.after_pictures),
         _again(said),
     )
-
-
-def _verdict(verdict: Headline) -> Html:
-    badge = element("strong", verdict.word, **{"class": "badge", "style": f"background:{verdict.colour}"})
-    return element("p", badge, verdict.claim, **{"class": "claim"})
 
 
 def _section(section: Section) -> Html:

@@ -186,7 +186,7 @@ def compare(
     for done, (name, law) in enumerate(chosen.items()):
         if progress is not None:
             progress(done, len(chosen))
-        traces[name] = {key: _touched(device, law, touch) for key, touch in touches.items()}
+        traces[name] = {key: simulate(device, law, t.hand, t.duration) for key, t in touches.items()}
         attacks[name] = attack(device, law, fastest=fastest, known=known)
         known_of[name] = standing(device, law, attacks[name])
         times[name] = _step_time(motor, law, touches["press"])
@@ -200,10 +200,6 @@ def compare(
         device=device,
         environment=wall,
     )
-
-
-def _touched(device: Device, law: Environment, touch: Touch) -> xr.Dataset:
-    return simulate(device, law, touch.hand, touch.duration)
 
 
 def _step_time(device: Device, law: Environment, touch: Touch) -> float:

@@ -107,10 +107,13 @@ def _fixed(device: Device, fastest: Fraction, stiffnesses: tuple[Fraction, ...])
     way = fastest * period / count
     found = _scaled(_in_counts([floor(way * USUAL), floor(way)]), float(count))
     found.update(_scaled({f"{name}, in counts": x for name, x in _small()}, float(count)))
-    for length in _step_depths(device, stiffnesses):
-        found.update(_scaled(_in_steps(float(length)), float(length)))
-    for length in _limit_depths(device, stiffnesses):
-        found.update(_scaled(_about_the_limit(float(length)), float(length)))
+    for stiffness in stiffnesses if device.force_resolution is not None else ():
+        length = device.exact("force_resolution") / stiffness
+        if 2 * length > device.exact("resolution"):
+            found.update(_scaled(_in_steps(float(length)), float(length)))
+    for stiffness in stiffnesses if device.force_limit is not None else ():
+        deep = float(device.exact("force_limit") / stiffness)
+        found.update(_scaled(_about_the_limit(deep), deep))
     found["as far as the fastest hand reaches, inside"] = np.array([1.0, 2.0 - 1e-6]) * float(way * count)
     most = float(fastest) * _MARGIN
     return {name: x for name, x in found.items() if speed_of(x, float(period)) <= most}
@@ -131,19 +134,6 @@ def _stiffnesses(device: Device, environment: Environment) -> tuple[Fraction, ..
     return (own.fraction, *softer)
 
 
-def _step_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
-    if device.force_resolution is None:
-        return []
-    depths = [device.exact("force_resolution") / stiffness for stiffness in stiffnesses]
-    return [depth for depth in depths if 2 * depth > device.exact("resolution")]
-
-
-def _limit_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
-    if device.force_limit is None:
-        return []
-    return [device.exact("force_limit") / stiffness for stiffness in stiffnesses]
-
-
 def _in_counts(reach: list[int]) -> dict[str, Floats]:
     """Of the encoder."""
     found: dict[str, Floats] = {}
@@ -151,7 +141,9 @@ def _in_counts(reach: list[int]) -> dict[str, Floats]:
         found.update(_strokes(n, "counts"))
         found.update(_sinusoids(n, "counts"))
         found.update(_credited(n))
-    found.update(_within_a_count())
+    for start in (0, 1, 8):  # slowly through a count, out of it over its edge, and back in one sample
+        up = np.linspace(start + 1e-6, start + 1 - 1e-6, 20)
+        found[f"slowly up within count {start}, then out of it"] = np.append(up, start + 1 + 1e-6)
     return found
 
 
@@ -232,13 +224,6 @@ def _credited(n: int) -> Iterator[tuple[str, Floats]]:
         way = np.linspace(0, n + 0.5, min(n, 32) + 1)
         yield f"{samples} samples over an edge, then {n} counts in and out", np.append(jitter, n + 0.5)
         yield f"{samples} samples over an edge, then {n} counts slowly in", np.concatenate([jitter, way])
-
-
-def _within_a_count() -> Iterator[tuple[str, Floats]]:
-    """Slowly through a count, out of it over its edge, and back in one sample."""
-    for start in (0, 1, 8):
-        up = np.linspace(start + 1e-6, start + 1 - 1e-6, 20)
-        yield f"slowly up within count {start}, then out of it", np.append(up, start + 1 + 1e-6)
 
 
 def found_motions(device: Device, wall: Wall, fastest: RealLike) -> dict[str, Floats]:

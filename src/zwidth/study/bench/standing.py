@@ -195,9 +195,9 @@ def _by_a_theorem(device: Device, law: Environment) -> Standing | list[str]:
 
 def _with_the_actuator(device: Device, law: Environment) -> tuple[Verdict | None, str]:
     """A proof for contact made and broken that covers the actuator; or why there is none."""
-    slow = _slow_current(device)
-    if slow:
-        return None, slow[0]
+    rise = current_rise(device)
+    if rise.ok is False:  # the record says that the force cannot be taken as instant
+        return None, f"A proof takes the force as instant, and it is not: {rise.text}."
     spare = device.exact("coulomb_friction") - half_a_step(device)
     if spare < 0:
         return None, (
@@ -232,12 +232,6 @@ def _paid(device: Device) -> str:
     if device.force_limit is not None:
         parts.append("the force limit is counted")
     return f" ({'; '.join(parts)})" if parts else ""
-
-
-def _slow_current(device: Device) -> list[str]:
-    """Where the record says that the force cannot be taken as instant."""
-    rise = current_rise(device)
-    return [f"A proof takes the force as instant, and it is not: {rise.text}."] if rise.ok is False else []
 
 
 def _takes_out(device: Device, law: Environment, verdict: Verdict) -> bool:

@@ -118,7 +118,9 @@ def _on_disk(path: Path, layout: Layout) -> Iterator[None]:
 
 
 def _resumed(zarr: Any, path: Path, layout: Layout) -> Any:
-    _refuse_links(path, layout)
+    # a part that is a link would be read, and written, wherever it leads
+    if (link := next((part for part in path.rglob("*") if part.is_symlink()), None)) is not None:
+        raise InputError(f"{path} is not gone on with: {link.relative_to(path)} in it is a link to elsewhere")
     try:
         group = zarr.open_group(path, mode="r+")
         found, begun = (group.attrs.get("format"), group.attrs.get("digest")), group.attrs.get("begun")
@@ -146,13 +148,6 @@ def _fits(group: Any, layout: Layout) -> bool:
         and (array.shape, array.chunks, str(array.dtype), array.shards) == (*arrays[name], None)
         for name, array in found.items()
     )
-
-
-def _refuse_links(path: Path, layout: Layout) -> None:
-    """A part that is a link would be read, and written, wherever it leads."""
-    link = next((part for part in path.rglob("*") if part.is_symlink()), None)
-    if link is not None:
-        raise InputError(f"{path} is not gone on with: {link.relative_to(path)} in it is a link to elsewhere")
 
 
 def _created(zarr: Any, path: Path, layout: Layout) -> Any:

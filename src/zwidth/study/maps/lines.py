@@ -89,15 +89,10 @@ def stability_boundary(
         np.concatenate([np.geomspace(_SLOWEST, 1, points // 2), np.linspace(0, 1, points - points // 2 + 2)])
     )
     found = curve(polynomials, pi * angles[(angles > 0) & (angles < 1)])
-    reach = _reach(found)
+    bound = found.damping[found.bounds]  # the straight lines go half as far again
+    reach = 1.5 * float(bound.max()) if len(bound) and bound.max() > 0 else 1.0
     runs = [found, *(line(polynomials, angle, np.linspace(0, reach, points)) for angle in (pi, 0.0))]
     return _dataset(runs, given, float(motion.period))
-
-
-def _reach(found: Curve) -> float:
-    """Virtual damping up to which the straight lines go: where the curve bounds, and half as far again."""
-    dampings = found.damping[found.bounds]
-    return 1.5 * float(dampings.max()) if len(dampings) and dampings.max() > 0 else 1.0
 
 
 def _dataset(runs: list[Curve], device: Device, period: float) -> xr.Dataset:

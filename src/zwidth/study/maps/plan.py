@@ -110,7 +110,9 @@ def plan(asked: Request) -> Plan:
         springs = sum(_spring_passes(asked, stiffness) for stiffness in softest_first)
         passive = [springs if value == 0 else 0 for value in b]
         ends = [spring_limit(asked) if value == 0 else np.nan for value in b]
-    velocity = _positive(asked.velocity_filter.transfer(period))
+    velocity = asked.velocity_filter.transfer(period)
+    sign = 1 if velocity.denominator[0] > 0 else -1  # positive below: Routh's signs are then all +
+    velocity = RationalFunction(*(tuple(sign * c for c in part) for part in velocity))
     return Plan(
         stiffness=k,
         damping=b,
@@ -170,12 +172,6 @@ def stable_limits(hand: HandPlan, damping: Array) -> Array:
     return np.array([np.nan if end is None else end.stiffness for end in found])
 
 
-def _positive(velocity: RationalFunction) -> RationalFunction:
-    """The same function with a positive leading coefficient below: Routh's signs are then all +."""
-    sign = 1 if velocity.denominator[0] > 0 else -1
-    return RationalFunction(*(tuple(sign * c for c in part) for part in velocity))
-
-
 def _limit(contact: tuple[Fraction, ...], b: Fraction) -> Fraction:
     """K_max for one |B|; below 0 where no stiffness will do."""
     period, part, hold, gain, variation, damping, friction, half_step = contact
@@ -200,13 +196,9 @@ def _hand(name: str, motion: Motion, velocity: RationalFunction) -> HandPlan:
     with precision(_BITS):
         parts = _in_w(family(motion, velocity))
         free, stiff, damped = (as_floats(part) for part in parts)
-        slack = max(_radius(c) for part in parts for c in part)
+        # of the balls, and a little more
+        slack = max(0.0 if isinstance(c, Fraction) else 1.01 * float(c.rad()) for part in parts for c in part)
     return HandPlan(name, free, stiff, damped, slack, motion, velocity)
-
-
-def _radius(coefficient: Any) -> float:
-    """Of its ball, and a little more."""
-    return 0.0 if isinstance(coefficient, Fraction) else 1.01 * float(coefficient.rad())
 
 
 def _in_w(polynomials: Family) -> list[Coefficients]:

@@ -159,12 +159,9 @@ def _range(name: str, start: Any, stop: Any, count: Any, unit: str, *, log: bool
         )
     if log and low <= 0:
         raise InputError(f"{name}: a range of equal ratios begins above 0, got {float(low):g}")
-    between = _ratios if log else _steps
-    return tuple(float(value) for value in between(low, high, number))
-
-
-def _steps(low: Fraction, high: Fraction, count: int) -> list[Fraction]:
-    return [low + (high - low) * i / (count - 1) for i in range(count)]
+    if log:
+        return tuple(float(value) for value in _ratios(low, high, number))
+    return tuple(float(low + (high - low) * i / (number - 1)) for i in range(number))
 
 
 def _ratios(low: Fraction, high: Fraction, count: int) -> list[Any]:

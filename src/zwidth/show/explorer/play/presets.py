@@ -26,14 +26,6 @@ LIGHT = LinearHand(mass=0.006, stiffness=200.0, damping=0.2)
 """A hand that holds the handle with two finger tips [kg, N/m, N·s/m]: it damps little."""
 
 
-_pressed = partial(played, hand=LIGHT, do=_PRESS)
-_led = partial(played_pair, hand=LIGHT, follower=_SPRING)
-
-
-def presets() -> list[Played]:
-    return [_passive(), _buzz(), _bounce(), _wobble(), _tissue(), _detents(), *_hard_wall(), *_arms()]
-
-
 def _paddle(**changes: Any) -> Device:
     paddle = Device(
         mass="36 g",
@@ -53,37 +45,14 @@ def _smooth(**changes: Any) -> Device:
     return _paddle(**given)
 
 
-def _passive() -> Played:
-    return played(
-        _paddle(),
-        Wall(300),
-        name="A wall that is proved",
-        do=_PRESS,
-        notice="The handle comes to rest at once, and there is nothing to hear but the press itself.",
-    )
+_pressed = partial(played, hand=LIGHT, do=_PRESS)
+_led = partial(played_pair, hand=LIGHT, follower=_SPRING)
 
 
-def _buzz() -> Played:
-    return _pressed(
-        _smooth(resolution="0.3 mm"),
-        Wall(1500, 10),
-        name="Buzz: a coarse encoder",
-        notice="Each count is a jump of the measured velocity, and of the damper's force: it buzzes.",
-    )
-
-
-def _bounce() -> Played:
-    return played(
-        _smooth(rate="100 Hz", force_limit="2 N"),
-        Wall(500),
-        name="Bounce: a slow rate",
-        hand=LIGHT,
-        do="Push the handle into the wall and hold the hand still, some millimetres inside.",
-        notice="The force is up to 10 ms old: the handle comes out faster than it went in, again and again.",
-    )
-
-
-def _wobble() -> Played:
+def presets() -> list[Played]:
+    paddle, smooth, wall = _paddle(), _smooth(), Wall(4000)
+    ideal = _smooth(resolution=0)
+    controller = PassivityController(largest_damping="unlimited")
     wheel = rotary(
         inertia="0.05 kg*m^2",
         damping="0.02 N*m*s/rad",
@@ -94,41 +63,53 @@ def _wobble() -> Played:
         force_limit="2 N*m",
         name="wheel",
     )
-    return played(
-        wheel,
-        PulseTransferFunction([20], [1]),
-        name="Death wobble: a wheel, hands off",
-        reach=3.0,
-        do="Turn the wheel a little, then let go and keep your hands off.",
-        notice="Held, it is calm. Hands off it swings on and on: the motor gives what friction takes.",
-    )
-
-
-def _tissue() -> Played:
-    return played(
-        _paddle(),
-        StandardLinearSolid(60, 150, 4),
-        name="Soft tissue",
-        do="Press in, wait, and come back quickly.",
-        notice="The force falls while you wait, and on the way back there is less of it.",
-    )
-
-
-def _detents() -> Played:
-    return played(
-        _paddle(),
-        NonlinearSpring.detents(3, "8 mm", "0.5 N"),
-        name="Detents",
-        do="Move the handle from one notch to the next, and let go between them.",
-        notice="It is drawn into the nearest notch and rests there.",
-    )
-
-
-def _hard_wall() -> list[Played]:
-    ideal, wall = _smooth(resolution=0), Wall(4000)
-    counted = _smooth()
-    controller = PassivityController(largest_damping="unlimited")
+    arm = _smooth(damping="0.15 N*s/m", force_limit="1 N")
+    near = Pair(arm, arm, stiffness=100, damping="0.02")
     return [
+        played(
+            paddle,
+            Wall(300),
+            name="A wall that is proved",
+            do=_PRESS,
+            notice="The handle comes to rest at once, and there is nothing to hear but the press itself.",
+        ),
+        _pressed(
+            _smooth(resolution="0.3 mm"),
+            Wall(1500, 10),
+            name="Buzz: a coarse encoder",
+            notice="Each count is a jump of the measured velocity, and of the damper's force: it buzzes.",
+        ),
+        played(
+            _smooth(rate="100 Hz", force_limit="2 N"),
+            Wall(500),
+            name="Bounce: a slow rate",
+            hand=LIGHT,
+            do="Push the handle into the wall and hold the hand still, some millimetres inside.",
+            notice="The force is up to 10 ms old: the handle comes out faster than it went in, again and "
+            "again.",
+        ),
+        played(
+            wheel,
+            PulseTransferFunction([20], [1]),
+            name="Death wobble: a wheel, hands off",
+            reach=3.0,
+            do="Turn the wheel a little, then let go and keep your hands off.",
+            notice="Held, it is calm. Hands off it swings on and on: the motor gives what friction takes.",
+        ),
+        played(
+            paddle,
+            StandardLinearSolid(60, 150, 4),
+            name="Soft tissue",
+            do="Press in, wait, and come back quickly.",
+            notice="The force falls while you wait, and on the way back there is less of it.",
+        ),
+        played(
+            paddle,
+            NonlinearSpring.detents(3, "8 mm", "0.5 N"),
+            name="Detents",
+            do="Move the handle from one notch to the next, and let go between them.",
+            notice="It is drawn into the nearest notch and rests there.",
+        ),
         _pressed(
             ideal,
             wall,
@@ -143,18 +124,11 @@ def _hard_wall() -> list[Played]:
             "What is proved of it is said above, and no more.",
         ),
         _pressed(
-            counted,
+            smooth,
             render(wall, ForceBounding()),
             name="The same, force bounding on",
             notice="The force is never more than what the hand has paid for: softer, and proved.",
         ),
-    ]
-
-
-def _arms() -> list[Played]:
-    arm = _smooth(damping="0.15 N*s/m", force_limit="1 N")
-    near = Pair(arm, arm, stiffness=100, damping="0.02")
-    return [
         _led(
             near,
             name="Two arms, no delay",
