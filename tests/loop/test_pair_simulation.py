@@ -181,7 +181,7 @@ def test_a_trace_of_a_pair_comes_back_from_a_file(tmp_path, suffix):
 @pytest.mark.parametrize(
     ("leader", "follower", "options", "message"),
     [
-        (Finger(), None, {"pair": zw.Pair(ARM, ARM.replace(mass=None), stiffness=20)}, "mass is needed"),
+        (Finger(), None, {"pair": zw.Pair(ARM, ARM.replace(mass=None), stiffness=20)}, "inertia is needed"),
         (Finger(), None, {"pair": zw.Pair(TURNS, TURNS, stiffness=20)}, r"give inertia \[kg\*m\^2\]"),
         (None, zw.Wall(100), {}, "nothing moves"),
         (Finger(), 3, {}, "got int"),

@@ -69,7 +69,7 @@ def test_frequencies_are_those_of_the_poles():
     ("device", "hand", "points", "message"),
     [
         (PADDLE, zw.stability.HandImpedance(mass=(0, 1)), 9, "one device and one hand"),
-        (zw.Device(damping=1, rate=1000), None, 9, "mass of the device"),
+        (zw.Device(damping=1, rate=1000), None, 9, "the device.s mass"),
         (PADDLE, None, 1, "two ends"),
     ],
     ids=["an interval", "no mass", "one point"],

@@ -128,7 +128,6 @@ BY_THEMSELVES = {
     "data/diagnosis/pairs/diagnose.py: ° of the motion": "the same",
     "machine/servo/live/rows.py": "changes many times a second: as many decimals and one unit throughout",
     "model/rendering/velocity.py: unit": "(m/s²)/√Hz is a unit that is not read",
-    "model/specification/read.py": "says what was typed, and what to type",
     "passivity/stability/shaking_hand.py: unit": "hours and minutes",
     "show/explorer/arms.py: unit": "what is typed into a field",
     "show/explorer/controls.py: unit": "the same",

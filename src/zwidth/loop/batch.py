@@ -135,7 +135,7 @@ def simulate_batch(
         If a parameter is unknown or a loop cannot be simulated.
     """
     axes = _axes(vary, together)
-    base = _Base(device, as_environment(environment, motion=device.motion), operator, options)
+    base = _Base(device, as_environment(environment, device=device), operator, options)
     owners = [_owner(name, base) for name in axes]
     loops = _laid_out(base, axes, owners, together, duration)
     states, summaries, finished = _run_all(loops, _workers(workers), progress)

@@ -83,7 +83,7 @@ def prepare(
 
     `single` is of the `LoopContext`; `flexible` allows a transmission.
     """
-    law, placed = as_environment(environment, motion=device.motion), initial_position is not None
+    law, placed = as_environment(environment, device=device), initial_position is not None
     laid = laid_out(
         device, law, operator, duration, {}, placed=placed, amplifier=amplifier, timing=timing,
         points_per_sample=points_per_sample, single=single, flexible=flexible,

@@ -78,7 +78,7 @@ def check_bounding(device: Device, environment: Environment | Any, *, single: bo
     InputError
         If the last law is another one, or a number of the device is an interval or missing.
     """
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     numbers = _numbers(device, law, single)
     if numbers is None:
         raise InputError(

@@ -264,7 +264,7 @@ def _as_law(device: Device, environment: Environment | Any) -> Environment:
         raise InputError(f"the first argument is a Device, {_instead_of_one(device)}")
     if type(environment).__name__ == "MatrixWall":
         raise InputError("a MatrixWall is of several coordinates: give an arm in the place of the device")
-    return as_environment(environment, motion=device.motion)
+    return as_environment(environment, device=device)
 
 
 def _passive(

@@ -308,7 +308,7 @@ def emit(
     """
     kind = _target(target)
     _check_prefix(prefix, kind)
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     chosen = _number(number, kind)
     certain = _certain(device, law)
     made = law_program(certain, law, single=chosen == "float")

@@ -80,7 +80,7 @@ def law_program(device: Device, environment: Environment | object, *, single: bo
         raise InputError(
             f"a machine runs one law with one period: give a single value, the one that you take, for {named}"
         )
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     packed = pack(device, law, 0.0, _SMALL, single=single)
     resolution = float(device.exact("resolution"))
     cells = Cells(MEMORY, packed.rest.shape[2])

@@ -102,7 +102,7 @@ class Servo(Closing):
         check_supported()
         check_kinds(device, connection)
         self.device, self.connection = device, connection
-        self.environment = as_environment(environment, motion=device.motion)
+        self.environment = as_environment(environment, device=device)
         self.safety, self.placement = safety or Safety(), placement or Placement()
         self.measured: Measured | None = None
         self.verdict: Verdict | None = None
@@ -251,7 +251,7 @@ class Servo(Closing):
             raise InputError("the loop does not run: start it with this law")
         if control[WANTED] != control[SERVED]:
             raise InputError("another law waits to begin: its force and that of the law now must come near 0")
-        law = as_environment(environment, motion=self.device.motion)
+        law = as_environment(environment, device=self.device)
         verdict = self.judge(law)
         if not anyway:
             refuse_not_proved(verdict, cast(Measured, self.measured))

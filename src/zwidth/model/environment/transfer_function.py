@@ -182,7 +182,7 @@ class ContinuousTransferFunction(_Ratio):
 
 
 def as_environment(
-    thing: object, discretization: Discretization | None = None, motion: str = ""
+    thing: object, discretization: Discretization | None = None, device: object = None
 ) -> Environment:
     """An environment from anything that has an H.
 
@@ -193,13 +193,14 @@ def as_environment(
         scipy.signal or harold.
     discretization
         For a continuous system, and for it alone.
-    motion
-        Of the device that meets it; an environment that was given in units of the other one is refused.
+    device
+        That meets it; an environment that was given in the units of another motion is refused.
     """
     if isinstance(thing, Environment):
         _refuse(discretization, "an environment has its own H(z)")
-        if motion and thing.met.given_for is not None and thing.met.given_for[1] != motion:
-            name, other = thing.met.given_for
+        motion, given_for = getattr(device, "motion", None), thing.met.given_for
+        if motion and given_for is not None and given_for[1] != motion:
+            name, other = given_for
             has, wants = (parameters_of(type(thing.met))[name].unit_for(of) for of in (other, motion))
             moves = {"linear": "slides", "rotary": "turns"}[motion]
             raise InputError(f"{name} is given in {has}, and the device {moves}: give it in {wants}")

@@ -100,7 +100,7 @@ def passive_limit(
         )
     if not isinstance(parameter, str):
         raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
     asked = parameter_of(device, law, parameter)
     most = checked_effort(effort)

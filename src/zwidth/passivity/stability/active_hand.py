@@ -173,7 +173,7 @@ def tolerated_activity(
     InputError
         If a parameter is an interval, f₀ is outside its bound, or the environment cannot be sampled.
     """
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     band = band_of(parse_number(below, "Hz", "below").fraction, device.exact("sample_period"))
     decision = decide(device, law)
     kept, broken = _kept(device, law, decision, band), _throughout(device, law, contact=True)

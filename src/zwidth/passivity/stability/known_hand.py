@@ -138,7 +138,7 @@ def coupled_stability(device: Device, wall: Environment | Any, hand: Any = None)
     InputError
         If the mass is unknown, another parameter is an interval, or the hand or the environment is none.
     """
-    law = as_environment(wall, motion=device.motion)
+    law = as_environment(wall, device=device)
     holding = as_hand(hand)
     motion = motion_of(device, holding)
     transfer = law.pulse_transfer_function(motion.period)

@@ -186,7 +186,7 @@ def program_of(
         raise InputError(f"the first argument is a Device, {instead_of_device(device)}")
     if friction is not None and not isinstance(friction, FrictionCurve):
         raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
-    given = as_environment(environment, motion=device.motion)
+    given = as_environment(environment, device=device)
     penetration, speed = bounds_given(device, penetration, speed)
     if laws_of(given):
         return chain_program(device, given, penetration, speed, force_limit, force_resolution, friction)

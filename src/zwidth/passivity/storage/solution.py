@@ -160,7 +160,7 @@ def available_storage(
         If the law remembers for ever, the encoder is ideal, or the grid is too large.
     """
     program = program_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     said = program_scope(device, law, program)
     most, done = checked_effort(effort), Effort(time_limit(seconds))
     whole = Until(done, most)

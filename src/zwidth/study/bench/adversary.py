@@ -150,7 +150,7 @@ def attack(
     """
     motor = device.motor_side
     limit, period = as_speed(motor, fastest), float(motor.exact("sample_period"))
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     motions = {**fixed_motions(motor, limit, law), **(known or {})}
     play = _player(device, law) if device is motor else partial(_taken, device, law)
     speeds = {name: speed_of(positions, period) for name, positions in motions.items()}

@@ -105,7 +105,7 @@ def sweep(
     law = (
         environment
         if environment is None or isinstance(device, Pair)
-        else as_environment(environment, motion=device.motion)
+        else as_environment(environment, device=device)
     )
     asked = request(of, Loop(device, law, operator, options), vary)
     file = None if path is None else _place(Path(path))

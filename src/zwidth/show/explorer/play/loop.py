@@ -95,7 +95,7 @@ def played(
     InputError
         If the loop cannot be simulated or emitted, or its delay is too long to be played.
     """
-    law = as_environment(environment, motion=device.motion)
+    law = as_environment(environment, device=device)
     text = module(law_program(seen_at_motor(device), law), about=["The law that is played."], numbers=())
     holding = hand or usual_hand(device).hand
     period = device.exact("sample_period")
