@@ -451,9 +451,7 @@ class Additions:
         return Addition(_numbers(enough), _numbers(fails))
 
     def _proves(self, **changed: Any) -> bool:
-        asked = replace(self.question, **changed)
-        loop = (asked.arm, asked.wall, asked.rate, asked.delay_samples, asked.held_to)
-        return arm_certificate(*loop)[0] is not None
+        return arm_certificate(replace(self.question, **changed))[0] is not None
 
 
 def _stiffer(wall: Wall | MatrixWall, times: float) -> Wall | MatrixWall:
