@@ -210,7 +210,7 @@ class _Slopes:
 
     def _start(self, turns: _Turns) -> Fraction:
         """Where the hand begins: the nearest rest."""
-        return self._rests[int(np.argmin(abs(self._rests_in_counts - turns.low)))]
+        return min(self._rests, key=lambda rest: abs(float(rest) / self._count - turns.low))
 
     def _way_in(self, far: Fraction | float) -> int:
         """Samples on the way to the round, so many counts."""
@@ -232,12 +232,11 @@ class _Slopes:
 
     @cached_property
     def _rests(self) -> list[Fraction]:
-        ends = (None, None) if self.bounds is None else self.bounds.ends
-        return resting_places(self.law, self.losses, ends)
+        return resting_places(self.law, self.losses, self._bounds)
 
-    @cached_property
-    def _rests_in_counts(self) -> Floats:
-        return np.array(self._rests, dtype=np.float64) / self._count
+    @property
+    def _bounds(self) -> tuple[Fraction | None, Fraction | None]:
+        return (None, None) if self.bounds is None else self.bounds.ends
 
     @cached_property
     def _law(self) -> tuple[Floats, Floats]:
@@ -265,7 +264,7 @@ class _Slopes:
     @cached_property
     def _ends(self) -> tuple[float, float]:
         """Between which positions the hand may be."""
-        low, high = (None, None) if self.bounds is None else self.bounds.ends
+        low, high = self._bounds
         known = -inf if low is None else float(low), inf if high is None else float(high)
         return known[0] / self._count, known[1] / self._count
 
