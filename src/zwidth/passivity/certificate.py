@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -196,8 +197,8 @@ def positivity_document(sign: Positivity) -> dict[str, Any]:
     return {
         "at_one": sign.at_one,
         "at_minus_one": sign.at_minus_one,
-        "square": [str(c) for c in sign.square],
-        "factor": [str(c) for c in sign.factor],
+        "square": [str(Decimal(c)) for c in sign.square],  # str(int) stops at 4300 digits
+        "factor": [str(Decimal(c)) for c in sign.factor],
     }
 
 

@@ -21,6 +21,7 @@ from zwidth.model.device.catalogue import DeviceInRange, Range
 from zwidth.model.environment.environment import Environment
 from zwidth.passivity.advice import digits_of
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.corners import Loop
 from zwidth.passivity.linear.boundary import COARSER, largest_holding
 from zwidth.passivity.parameter_limits import has_stiffness, provable, stiffness_of
 from zwidth.passivity.scope import unit_key
@@ -96,14 +97,11 @@ class OverRanges:
 
     def stated(self) -> str:
         """The ranges, in a line."""
-        return ", ".join(
-            f"{_named(k, own)} {shown(own.interval, own.unit)}" for k, own in self.ranges.items()
-        )
+        return ", ".join(_told(key, own) for key, own in self.ranges.items())
 
     def why(self) -> Iterator[str]:
         """Each range, and why it is stated."""
-        for key, own in self.ranges.items():
-            yield f"{_named(key, own)} {shown(own.interval, own.unit)}: {own.why}"
+        yield from (f"{_told(key, own)}: {own.why}" for key, own in self.ranges.items())
 
     def to_dict(self) -> dict[str, Any]:
         """It as plain data, a unit in every key of a physical quantity."""
@@ -143,6 +141,10 @@ def _key(key: str, own: Range) -> str:
 
 def _named(key: str, own: Range) -> str:
     return in_words(_key(key, own))
+
+
+def _told(key: str, own: Range) -> str:
+    return f"{_named(key, own)} {shown(own.interval, own.unit)}"
 
 
 def _stiffness(value: float, motion: str) -> str:
@@ -212,15 +214,11 @@ def _is_passive(device: Device, law: Environment) -> bool:
 def _largest(device: Device, law: Environment) -> float:
     """The largest stiffness that holds at all corners, to a part in a thousand; 0 for none."""
 
-    def holds(k: Fraction) -> bool:
-        return _all_hold(device, law.replace(stiffness=Exact(k)))
+    def at(k: Fraction) -> Loop:
+        return device, law.replace(stiffness=Exact(k))
 
-    return largest_holding(holds, float(stiffness_of(law)) or 1.0, COARSER) or 0.0
-
-
-def _all_hold(device: Device, law: Environment) -> bool:
-    """Whether every corner of the box is proved, contact made and broken."""
-    return provable(lambda _: (device, law), Fraction(0), True)
+    now = float(stiffness_of(law)) or 1.0
+    return largest_holding(lambda k: provable(at, k, contact=True), now, COARSER) or 0.0
 
 
 def _first(device: Device, keys: list[str], law: Environment, verdict: Verdict) -> Measure | None:

@@ -189,7 +189,7 @@ class LinearVerdict(Verdict):
         friction = self.decision.contact_friction if self._with_contact_broken else friction
         b, setting = self.decision.loop.damping, self.decision.setting
         return {
-            "damping": None if need is None else _difference(b, need),
+            "damping": None if need is None else float(b - Fraction(repr(need))),  # exactly 0 at the limit
             "coulomb_friction": None if friction is None else float(setting.coulomb_friction - friction),
         }
 
@@ -262,8 +262,3 @@ class LinearVerdict(Verdict):
         if self.admissible_speed is not None:
             rows.append(("slower hands are safe up to", shown(self.admissible_speed, unit("velocity"), 6)))
         return [*rows, *super().rows()]
-
-
-def _difference(b: Fraction, need: float) -> float:
-    """b − need exactly: 0 at the limit, whatever the rounding of either."""
-    return float(b - Fraction(repr(need)))

@@ -317,7 +317,9 @@ def advise_on_spring(device: Device, spring: Environment, passive: bool) -> tupl
     found = []
     for knob, at in _knobs(device, spring):
         for advice in turn_all([knob], device.motion, kind):  # type: ignore[arg-type]
-            if isinstance(advice.to, float) and (advice.to == inf or _is_proved(at, advice.to)):
+            if not isinstance(advice.to, float):
+                continue
+            if advice.to == inf or certify_spring(*at(Exact(advice.to).fraction)).covered() is not None:
                 found.append(advice)
     return tuple(found)
 
@@ -326,16 +328,13 @@ def _knobs(device: Device, spring: Environment) -> Iterator[tuple[Knob, Callable
     def of_device(key: str) -> Callable[[Fraction], Loop]:
         return lambda value: (device.replace(**{key: Exact(value)}), spring)
 
-    def knob(key: str, now: float, at: Callable[[Fraction], Loop], more: bool, name: str) -> Knob:
-        return Knob(key, now, lambda value: _is_enough(at, value), more, name)
-
     now = float(device.exact("sample_period") ** -1)
-    rate = knob("rate", now, of_device("rate"), True, "rate")
     between = partial(between_rates, now, float(device.exact("delay")))
-    yield replace(rate, between=between), of_device("rate")
+    at = of_device("rate")
+    yield Knob("rate", now, partial(_is_enough, at), True, "rate", between=between), at
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False)):
-        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))
-        yield knob(key, float(device.exact(key)), of_device(key), more, name), of_device(key)
+        name, at = _OF.get(key, "") + in_words(key), of_device(key)
+        yield Knob(key, float(device.exact(key)), partial(_is_enough, at), more, name), at
     steepest = spring_need(device, spring).steepest
     if steepest > 0:
 
@@ -343,7 +342,8 @@ def _knobs(device: Device, spring: Environment) -> Iterator[tuple[Knob, Callable
             forces = [Exact(f.fraction * slope / steepest) for _, f in spring.points]
             return device, NonlinearSpring(positions=[x for x, _ in spring.points], forces=forces)
 
-        yield knob("stiffness", float(steepest), scaled, False, "steepest slope"), scaled
+        holds = partial(_is_enough, scaled)
+        yield Knob("stiffness", float(steepest), holds, False, "steepest slope"), scaled
 
 
 def _is_enough(at: Callable[[Fraction], Loop], value: Fraction) -> bool:
@@ -358,8 +358,3 @@ def _is_enough(at: Callable[[Fraction], Loop], value: Fraction) -> bool:
         return False
     few = len(spring.points) <= _FEW_POINTS and device.exact("delay") == 0
     return need.spare(b) >= 0 or (few and certify_spring(device, spring).covered() is not None)
-
-
-def _is_proved(at: Callable[[Fraction], Loop], value: float) -> bool:
-    """Whether the checker accepts the loop with this value."""
-    return certify_spring(*at(Exact(value).fraction)).covered() is not None

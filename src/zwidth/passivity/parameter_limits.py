@@ -32,13 +32,10 @@ def provable(change: Change, value: Fraction, contact: bool = False) -> bool:
         device, law = change(value)
         certain = device.is_certain and law.is_certain
         corners = [(device, law)] if certain else worst_corners(device, law)
-        return all(_is_provable(decide(*corner), contact) for corner in corners)
+        decisions = (decide(*corner) for corner in corners)
+        return all(d.covers_contact if contact and not d.is_spring else d.is_provable for d in decisions)
     except (InputError, ZeroDivisionError):
         return False
-
-
-def _is_provable(decision: Decision, contact: bool) -> bool:
-    return decision.covers_contact if contact and not decision.is_spring else decision.is_provable
 
 
 def required_damping(decision: Decision, contact: bool = False) -> float | None:

@@ -226,7 +226,6 @@ OF_THE_LAW = "the environment's intervals"
 def scope_of(device: Device, environment: Environment) -> Scope:
     """What is asked of a loop, before anything is found: every hand, contact as the law has it."""
     require_rigid(device, "this claim")
-    certain = device.is_certain
     friction, damping = ends(device.coulomb_friction)[0], ends(device.damping)[0]
     uncertain = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
     of_law = [*in_intervals(environment, environment)]
@@ -236,8 +235,8 @@ def scope_of(device: Device, environment: Environment) -> Scope:
     return Scope(
         contact="made and broken" if environment.unilateral else "both sides",
         encoder="counted" if ends(device.resolution)[1] else "ideal",
-        damping=float(device.exact("damping") if certain else damping),
-        coulomb_friction=float(device.exact("coulomb_friction") if certain else friction),
+        damping=float(damping),
+        coulomb_friction=float(friction),
         friction_speed=None if device.friction_speed is None else float(ends(device.friction_speed)[0]),
         clamped=environment.clamped and not environment.spring,
         intervals=(*uncertain, *(() if is_named else (OF_THE_LAW,))),

@@ -5,7 +5,7 @@ Nothing reads these sentences again: whoever needs a fact takes it from the reco
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from zwidth.passivity.scope import (
@@ -21,7 +21,6 @@ from zwidth.passivity.scope import (
     Transmission,
 )
 from zwidth.quantity.exact import Interval
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown, told_quantity
 
 NOT_FOUND = "Neither a proof nor a motion that takes energy out was found"
@@ -31,6 +30,10 @@ UNWRITTEN = "No motion that shows it was found short enough to be written down."
 class _Said(NamedTuple):
     in_full: str
     in_short: str
+
+
+def _alike(words: str) -> _Said:
+    return _Said(words, words)
 
 
 _CONTACT: dict[Contact, _Said] = {
@@ -47,7 +50,7 @@ _CONTACT: dict[Contact, _Said] = {
     ),
 }
 _OF_A_MOTION: dict[Contact, _Said] = {
-    "made and broken": _Said("the motion makes and breaks contact", "the motion makes and breaks contact"),
+    "made and broken": _alike("the motion makes and breaks contact"),
     "kept": _Said(
         "the motion stays inside: a hand that keeps contact can make it", "the motion stays inside"
     ),
@@ -138,9 +141,7 @@ _ENCODER: dict[Encoder, _Said] = {
 }
 _TORQUE: dict[Torque, _Said] = {
     "": _Said("", ""),
-    "follows the arm": _Said(
-        "the torque follows the arm within a period", "the torque follows the arm within a period"
-    ),
+    "follows the arm": _alike("the torque follows the arm within a period"),
     "follows the readings": _Said(
         "the torque follows the readings of the encoders within a period",
         "the torque follows the encoders within a period",
@@ -152,9 +153,7 @@ _SAMPLING: dict[Sampling, _Said] = {
         "a constant sample period and delay, no missed samples",
         "constant period and delay, no missed samples",
     ),
-    "any": _Said(
-        "any sample period, delays and missed samples", "any sample period, delays and missed samples"
-    ),
+    "any": _alike("any sample period, delays and missed samples"),
 }
 
 
@@ -231,10 +230,9 @@ def if_friction_goes_on(scope: Scope) -> str:
 
     Of hands with a bound on speed too: theirs is a mean over a sample.
     """
-    if scope.friction_speed is None or scope.friction is not None:
+    if scope.friction is not None:
         return ""
-    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
-    return f", if friction beyond {speed}, where it was not measured, is no less than f_c + b |v|"
+    return _measured(scope, ", if friction beyond {}, where it was not measured, is no less than f_c + b |v|")
 
 
 def lines(scope: Scope, outcome: str | None = None) -> tuple[str, ...]:
@@ -290,51 +288,52 @@ def intervals(scope: Scope, outcome: Outcome) -> str | None:
     """The line that stands beside a loop with intervals."""
     if not scope.intervals:
         return None
-    within = {name: f"{in_words(name)} {_between(name, ends, scope.motion)}" for name, *ends in scope.bounds}
+    within = {
+        name: f"{in_words(name)} {told_quantity(Interval(*ends), name, scope.motion, 4)}"
+        for name, *ends in scope.bounds
+    }
     values = ", ".join(within.get(name, "each interval of the environment") for name in scope.intervals)
     holds = "" if outcome == "undecided" else "holds for every value "
     numbers = "numbers and motion" if outcome == "active" else "numbers"
     return f"{holds}within {values}; {numbers} are of the worst corner"
 
 
-def _between(name: str, ends: Sequence[float], motion: str) -> str:
-    return shown(Interval(*ends), GLOSSARY[name].unit_for(motion))
-
-
 def _losses(scope: Scope) -> Iterator[str]:
     if scope.friction is not None:
         yield f"the device takes out what its friction curve says; {scope.friction.assumption}"
-    elif scope.damping is not None and scope.coulomb_friction is not None:
-        b = told_quantity(scope.damping, "damping", scope.motion)
-        dry = told_quantity(scope.coulomb_friction, "force", scope.motion)
-        yield (
-            f"{_TAKES[scope.transmission]} takes out at least b = {b} of viscous and f_c = {dry} of Coulomb "
-            f"friction{_measured(scope)}"
-        )
     elif scope.damping is not None:
         b = told_quantity(scope.damping, "damping", scope.motion)
-        yield (
-            f"the device takes out b = {b} of viscous friction; Coulomb friction is left out"
-            f"{_measured(scope)}"
+        taken = f"the device takes out b = {b} of viscous friction; Coulomb friction is left out"
+        if scope.coulomb_friction is not None:
+            dry = told_quantity(scope.coulomb_friction, "force", scope.motion)
+            whose = _TAKES[scope.transmission]
+            taken = f"{whose} takes out at least b = {b} of viscous and f_c = {dry} of Coulomb friction"
+        yield taken + _measured(
+            scope, "; it was measured up to {}, for faster motions the same is taken for granted"
         )
 
 
-def _measured(scope: Scope) -> str:
+def _measured(scope: Scope, words: str) -> str:
+    """The words with the speed up to which friction was measured; "" where that is not known."""
     if scope.friction_speed is None:
         return ""
-    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
-    return f"; it was measured up to {speed}, for faster motions the same is taken for granted"
+    return words.format(told_quantity(scope.friction_speed, "friction_speed", scope.motion))
 
 
 def _actuator(scope: Scope) -> str:
     """What of the actuator is in it."""
-    parts = {"force limit": scope.force_limit, "converter steps": scope.force_steps}
-    counted = [name for name, value in parts.items() if value]
-    rest = ", ".join([name for name in parts if name not in counted] + ["current rise and added filters"])
+    counted, left = _counted(scope, True), _counted(scope, False)
+    rest = ", ".join([*left, "current rise and added filters"])
     if not counted:
         return f"ideal actuator: {rest} are not in the claim"
     verb = "is" if counted == ["force limit"] else "are"
     return f"the {' and the '.join(counted)} {verb} counted in; {rest} are not"
+
+
+def _counted(scope: Scope, is_counted: bool) -> list[str]:
+    """What of the actuator may be in a proof, and is or is not."""
+    parts = {"force limit": scope.force_limit, "converter steps": scope.force_steps}
+    return [name for name, value in parts.items() if value == is_counted]
 
 
 def describe_hands(hands: Hands, motion: str) -> str:
@@ -354,7 +353,8 @@ def describe_hands(hands: Hands, motion: str) -> str:
         )
     if hands.inside is not None:
         counts = _counts(hands.counts_inside)
-        bounds.append(f"up to {_far(hands.inside, motion)}{counts} {_sides(hands, motion)}")
+        far = told_quantity(hands.inside, "position", motion, 4)
+        bounds.append(f"up to {far}{counts} {_sides(hands, motion)}")
     return f"hands of {', '.join(bounds)}" if bounds else "every hand"
 
 
@@ -368,11 +368,7 @@ def _sides(hands: Hands, motion: str) -> str:
         return "inside and any distance outside"
     if hands.inside is not None and hands.outside == hands.inside:
         return "on either side"
-    return f"inside and {_far(hands.outside, motion)} outside"
-
-
-def _far(way: float, motion: str) -> str:
-    return shown(way, GLOSSARY["position"].unit_for(motion))
+    return f"inside and {told_quantity(hands.outside, 'position', motion, 4)} outside"
 
 
 # In short: numbers and reasons may be left out, and nothing that makes a claim narrower.
@@ -394,7 +390,8 @@ def _short_parts(scope: Scope, active: bool, hands: bool) -> Iterator[str]:
     if hands:
         yield from _short_hands(scope, active)
     yield _short_losses(scope)
-    yield _short_actuator(scope)
+    counted = " and ".join(_counted(scope, True))
+    yield f"{counted} counted, else an ideal actuator" if counted else "ideal actuator"
     yield _TRANSMISSION[scope.transmission].in_short
     yield _TORQUE[scope.torque].in_short
     yield _forces(scope)
@@ -426,20 +423,8 @@ def _short_losses(scope: Scope) -> str:
     if not parts:
         return ""
     left_out = "" if scope.coulomb_friction is not None else ", Coulomb friction left out"
-    return f"at least {', '.join(parts)} in the device{left_out}{_short_measured(scope)}"
-
-
-def _short_measured(scope: Scope) -> str:
-    if scope.friction_speed is None:
-        return ""
-    speed = told_quantity(scope.friction_speed, "friction_speed", scope.motion)
-    return f", measured up to {speed} and taken for granted beyond"
-
-
-def _short_actuator(scope: Scope) -> str:
-    parts = {"force limit": scope.force_limit, "converter steps": scope.force_steps}
-    counted = [name for name, value in parts.items() if value]
-    return f"{' and '.join(counted)} counted, else an ideal actuator" if counted else "ideal actuator"
+    measured = _measured(scope, ", measured up to {} and taken for granted beyond")
+    return f"at least {', '.join(parts)} in the device{left_out}{measured}"
 
 
 def _forces(scope: Scope) -> str:

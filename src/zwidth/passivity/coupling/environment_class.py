@@ -93,23 +93,6 @@ class SlopeBounds:
         """ι = μT/2 [N·s/m; N·m·s/rad]: f(k) e ≥ ΔΦ + ½ μ e²."""
         return Exact(self.least.fraction * number("sample_period", sample_period) / 2)
 
-    def behind_a_spring(self, stiffness: RealLike) -> SlopeBounds:
-        """The same springs felt through another, K_c: slopes K_c s/(K_c + s), for K_c + μ > 0.
-
-        Raises
-        ------
-        InputError
-            If K_c + μ ≤ 0: the far end has no certain place.
-        """
-        k = number("stiffness", stiffness)
-        if k <= 0 or k + self.least.fraction <= 0:
-            raise InputError(
-                f"a spring before slopes down to {self.least:g} must be stiffer than {-self.least:g} and 0, "
-                f"got {stiffness}: softer, its far end snaps through"
-            )
-        ends = (k * s.fraction / (k + s.fraction) for s in (self.least, self.greatest))
-        return SlopeBounds(*ends, bounded_below=True)
-
     def describe(self, motion: str = "linear") -> str:
         """The class in words, with the hypothesis on Φ."""
         unit = GLOSSARY["stiffness"].unit_for(motion)
@@ -175,21 +158,3 @@ class PassivityExcess:
         above = told_quantity(self.input, "damping", motion)
         below = shown(self.output, "rad/N/m/s" if motion == "rotary" else "m/N/s", 6)
         return f"every environment with input index {above} and output index {below}"
-
-    @classmethod
-    def of_damper(cls, least: RealLike, greatest: RealLike) -> PassivityExcess:
-        """Of a memoryless damper with gains f/v between two bounds, g + G > 0 [N·s/m; N·m·s/rad].
-
-        From (f − g v)(G v − f) ≥ 0.
-        """
-        low, high = (
-            number(name, gain, quantity="damping")
-            for name, gain in (("least", least), ("greatest", greatest))
-        )
-        if low > high or low + high <= 0:
-            raise InputError(
-                f"the gains of a damper are given in order, with a positive sum; got {least} and {greatest}. "
-                "For a symmetric range raise the greatest a little"
-            )
-        total: Fraction = low + high
-        return cls(low * high / total, 1 / total)

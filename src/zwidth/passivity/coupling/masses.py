@@ -118,17 +118,12 @@ class PassiveMasses(Result):
     def to_dict(self) -> dict[str, Any]:
         """The intervals, and at each end its proof and violation, as plain data."""
         key = unit_key("virtual_mass", self.device.motion)
+        both = (verdict for limit in self.limits for verdict in (limit.passive, limit.beyond))
         return {
             **super().to_dict(),
             "body": self.body.describe(self.device.motion),
-            "verdicts": [_stated(verdict, key) for verdict in self._verdicts()],
+            "verdicts": [_stated(verdict, key) for verdict in (self.verdict, *both)],
         }
-
-    def _verdicts(self) -> Iterator[LinearVerdict]:
-        """Of the body's own mass, and of each end."""
-        yield self.verdict
-        for limit in self.limits:
-            yield from (limit.passive, limit.beyond)
 
     def _masses(self) -> str:
         unit = quantity_unit("virtual_mass", self.device.motion)

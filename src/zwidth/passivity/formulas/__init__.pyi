@@ -18,7 +18,6 @@ from zwidth.passivity.formulas.colgate_schenkel import spring_stiffness as sprin
 from zwidth.passivity.formulas.colgate_schenkel import window_damping as window_damping
 from zwidth.passivity.formulas.diolaiti import PlanePoint as PlanePoint
 from zwidth.passivity.formulas.diolaiti import admissible_speed as admissible_speed
-from zwidth.passivity.formulas.diolaiti import catalogue_coordinates as catalogue_coordinates
 from zwidth.passivity.formulas.diolaiti import plane_point as plane_point
 from zwidth.passivity.formulas.standard_linear_solid import (
     standard_linear_solid_damping as standard_linear_solid_damping,

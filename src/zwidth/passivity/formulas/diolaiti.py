@@ -20,8 +20,8 @@ from math import inf
 from typing import Literal, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.model.device import Device, catalogue
-from zwidth.passivity.formulas.abbott_okamura import quantized_wall, stiffness_of_wall
+from zwidth.model.device import Device
+from zwidth.passivity.formulas.abbott_okamura import quantized_wall
 from zwidth.quantity.exact import Exact, RealLike
 
 Region = Literal["globally stable", "limit cycles", "globally unstable", "locally stable"]
@@ -50,37 +50,6 @@ class PlanePoint(NamedTuple):
         if fast:
             return "globally stable" if small else "limit cycles"
         return "locally stable" if small else "globally unstable"
-
-    def cycle_loss(self, step: RealLike, start: Start = "inside") -> Exact | float:
-        """W/(2 K Δ² ξ) = (β − ½) ξ + σ − ½, or (β − ½) ξ + σ from the surface.
-
-        W is what the hand loses by one sample in and one sample out: "inside" from just below one edge to
-        just past the last, "surface" from x = 0 to ξ Δ.  Negative where the cycle gains energy.
-
-        Parameters
-        ----------
-        step
-            ξ > 0, encoder counts moved in one sample.
-        """
-        xi = Exact(step).fraction
-        if xi <= 0:
-            raise InputError(f"step must be > 0 counts, got {step}: a hand at rest gains nothing")
-        if not isinstance(self.dry, Exact):
-            return inf
-        return Exact((self.viscous.fraction - _HALF) * xi + _surplus(self.dry, start))
-
-    def largest_step(self, start: Start = "inside") -> Exact | float:
-        """ξ_max = (σ − ½)/(½ − β), or σ/(½ − β) from the surface [counts per sample].
-
-        The largest step up to which no cycle gains energy: inf for β ≥ ½ where
-        small steps lose, 0 where they gain.
-        """
-        if not isinstance(self.dry, Exact):
-            return inf
-        surplus, deficit = _surplus(self.dry, start), _HALF - self.viscous.fraction
-        if surplus < 0:
-            return Exact(0)
-        return Exact(surplus / deficit) if deficit > 0 else inf
 
 
 def plane_point(device: Device, stiffness: RealLike) -> PlanePoint:
@@ -135,41 +104,8 @@ def admissible_speed(device: Device, stiffness: RealLike, start: Start = "inside
     return Exact(surplus / deficit) if deficit > 0 else inf
 
 
-def catalogue_coordinates(stiffness: RealLike) -> dict[str, tuple[Exact | None, Exact | None]]:
-    """(β, σ) of every catalogue device at one stiffness, None where a source is missing.
-
-    Devices with neither are left out; with one, the device lies on a line of
-    the plane.
-
-    Parameters
-    ----------
-    stiffness
-        K > 0 [N/m; N·m/rad].
-    """
-    k = stiffness_of_wall(stiffness)
-    marks = {name: _coordinates(catalogue.entry(name).known(), k) for name in catalogue.names()}
-    return {name: mark for name, mark in marks.items() if mark != (None, None)}
-
-
-def _coordinates(known: dict[str, Exact], k: Fraction) -> tuple[Exact | None, Exact | None]:
-    value = {key: number.fraction for key, number in known.items()}
-    if "rate" in value:
-        value["sample_period"] = 1 / value["rate"]
-    return _ratio(value, "damping", "sample_period", k), _ratio(value, "coulomb_friction", "resolution", k)
-
-
-def _ratio(value: dict[str, Fraction], top: str, bottom: str, k: Fraction) -> Exact | None:
-    if top not in value or not value.get(bottom):
-        return None
-    return Exact(value[top] / (k * value[bottom]))
-
-
 def _at_least_half(value: float) -> bool:
     return (value.fraction if isinstance(value, Exact) else value) >= _HALF
-
-
-def _surplus(dry: Exact, start: Start) -> Fraction:
-    return dry.fraction - (_HALF if _is_inside(start) else 0)
 
 
 def _is_inside(start: Start) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from zwidth.checker import verify
 from zwidth.model.pairs import Pair, Side
+from zwidth.passivity.certificate import positivity_document
 from zwidth.passivity.linear.criterion import frequency
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.result import Evidence
@@ -90,7 +90,9 @@ class PairCertificate(Evidence):
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
         names = zip(("leader", "follower", "both"), self.signs, _WEIGHTED, strict=True)
-        proof: dict[str, Any] = {name: _positivity(sign, more) for name, sign, more in names}
+        proof: dict[str, Any] = {
+            name: {**positivity_document(sign), "at_one": sign.at_one + more} for name, sign, more in names
+        }
         if any(self.pair.compensations):
             arms = zip(("leader", "follower"), self.tangents, strict=True)
             proof["tangents"] = {name: exact_text(r) for name, r in arms}
@@ -108,15 +110,6 @@ class PairCertificate(Evidence):
     def describe(self) -> str:
         """What was proved, in words."""
         return "the work of both hands is nowhere negative"
-
-
-def _positivity(sign: Positivity, more: int) -> dict[str, Any]:
-    return {
-        "at_one": sign.at_one + more,
-        "at_minus_one": sign.at_minus_one,
-        "square": [str(Decimal(c)) for c in sign.square],  # str(int) stops at 4300 digits
-        "factor": [str(Decimal(c)) for c in sign.factor],
-    }
 
 
 @dataclass(frozen=True, repr=False)

@@ -53,18 +53,9 @@ def largest_stiffness(pair: Pair) -> float | None:
 
     As the leader feels it, what is reflected to it added.
     """
-
-    def holds(k: Fraction) -> bool:
-        if k <= 0:
-            return False
-        try:
-            return is_passive(pair.stiffened(k))
-        except InputError:
-            return False
-
-    closed = largest_spring(pair)
+    holds, closed = _holds(pair.stiffened), largest_spring(pair)
     guess = float(closed) if closed else float(pair.felt_stiffness)
-    if not (holds(Exact(guess / 10**6).fraction) or is_passive(pair)):
+    if not ((guess > 0 and holds(Exact(guess / 10**6).fraction)) or is_passive(pair)):
         return None
     found = largest_holding(lambda k: not k or holds(k), guess, grain_of(pair))
     return found or None

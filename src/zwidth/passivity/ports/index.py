@@ -233,3 +233,11 @@ class PortAnswer(PassivityAnswer):
     def bands(self) -> tuple[Band, ...]:
         """Where a sinusoid takes energy out, ‖S(jω)‖ > 1, in ascending frequency; () where none does."""
         return self.input.bands()
+
+    def numbers(self) -> dict[str, Any]:
+        """What was found, and the bands of violation, as plain data."""
+        return {**super().numbers(), "violated_Hz": [[band.low, band.high] for band in self.bands]}
+
+    def __repr__(self) -> str:
+        rows = "; ".join(f"{name} {text}" for name, text in self.rows())
+        return f"<{type(self).__name__} {self.outcome}: {rows}>"

@@ -100,12 +100,7 @@ class PassivityIndices(PortAnswer):
         """The indices, and the damping needed by the sampled loop, as plain data."""
         damping = self.sampled_damping
         need = {} if damping is None else {unit_key("damping", damping.device.motion): damping.required}
-        violated = [[band.low, band.high] for band in self.bands]
-        return {**super().numbers(), "violated_Hz": violated, **need}
-
-    def __repr__(self) -> str:
-        rows = "; ".join(f"{name} {text}" for name, text in self.rows())
-        return f"<PassivityIndices {self.outcome}: {rows}>"
+        return {**super().numbers(), **need}
 
 
 def passivity_indices(
@@ -218,7 +213,8 @@ def _bare(system: Any) -> Device | None:
 
 def _of_several_axes(port: Port, device: Device) -> SampledDamping:
     """Minus the input index, for whole samples of delay at the rate that H(z) was made for."""
-    period = _period(port, device)
+    period = device.exact("sample_period")
+    require_period(port.period, period)
     delay = device.exact("delay") / period
     if delay.denominator != 1:
         raise InputError(
@@ -241,9 +237,3 @@ def _integrated(port: Port, period: Fraction, delay: int) -> Port:
     found = in_lowest_terms(n, d)
     assert found is not None, "a denominator is not zero"
     return from_polynomials(found[1], found[0], "discrete", period)
-
-
-def _period(port: Port, device: Device) -> Fraction:
-    period = device.exact("sample_period")
-    require_period(port.period, period)
-    return period

@@ -91,14 +91,6 @@ class ScatteringPassivity(PortAnswer):
             rows.append(("hidden", "a cancelled mode does not decay"))
         return rows
 
-    def numbers(self) -> dict[str, Any]:
-        """The signs Σ, ‖S‖∞ and the bands of violation, as plain data."""
-        return {**super().numbers(), "violated_Hz": [[band.low, band.high] for band in self.bands]}
-
-    def __repr__(self) -> str:
-        rows = "; ".join(f"{name} {text}" for name, text in self.rows())
-        return f"<ScatteringPassivity {self.outcome}: {rows}>"
-
 
 def scattering_passivity(system: Any) -> ScatteringPassivity:
     """Whether S is bounded real, exactly, with a proof or with waves that bring back more than they carry.

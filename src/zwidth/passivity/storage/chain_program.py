@@ -32,7 +32,7 @@ from zwidth.passivity.storage.chain_table import (
     tabulate,
 )
 from zwidth.passivity.storage.domain import Domain, Losses, counts_of, losses_of
-from zwidth.passivity.storage.gain import Gain, motion_document
+from zwidth.passivity.storage.gain import Gain, motion_document, straight
 from zwidth.passivity.storage.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.storage.value_iteration import Progress, Until, ValueIteration, value_iteration
 from zwidth.passivity.witness.motion import Motion, Repeat
@@ -253,9 +253,8 @@ def _slow_way_in(grid: ChainGrid, law: ChainLaw, round_: list[Fraction]) -> list
     end = round_[0] // resolution
     begin = min(law.resting, key=lambda n: abs(n - end))
     start = round_[0] if begin == end else (begin + Fraction(1, 2)) * resolution
-    count = max(1, ceil(abs(round_[0] - start) / (grid.domain.speed * resolution)))
-    way = [start + (round_[0] - start) * Fraction(k, count) for k in range(count + 1)]
-    if count > _SLOWEST:
+    way = straight(start, round_[0], grid.domain.speed * resolution)
+    if len(way) > _SLOWEST + 1:
         return None
     run, before = Run(law, begin), b""
     for p in way:

@@ -21,7 +21,7 @@ from zwidth.passivity.storage.value_iteration import ValueIteration
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.witness import FORMAT, rounded_energy
 from zwidth.passivity.wording import size
-from zwidth.quantity.text import shown
+from zwidth.quantity.text import quantity_unit, shown
 
 _NEAREST = 40  # halvings of a count by which a hand on the upper edge of a cell may have to stay below it
 
@@ -123,20 +123,34 @@ def gain(iteration: ValueIteration[Grid], motion: str, bounds: HandBounds | None
         start = min(rests, key=lambda x: abs(x - round_[0]), default=None)
         if start is None:
             return None
-        approach = _steps(start, round_[0], grid.domain.speed * grid.losses.resolution)
+        approach = straight(start, round_[0], grid.domain.speed * grid.losses.resolution)
         x = [*approach, *round_[1:], round_[0]]
-        part = Repeat(len(approach) - 1, len(x) - 1, 1)
+        part = Repeat(len(approach) - 1, len(x) - 1, _settling(grid, len(round_)))
         path = Motion(tuple(x), switch_positions(grid, x, part), (part,))
-        document = _document(grid, path, motion, bounds)
-        for _ in range(3):  # rounds that settle the law, rounds that pay for the approach, and once more
-            found = _recomputed(document, _settling(grid, len(round_)))
-            if found is None:
-                break
-            energy, per_round = found
-            if energy > 0:
-                return _witness(grid, document, path, energy, per_round, motion)
-            path = path.repeated(document["repeats"]["times"] + ceil(-energy / per_round) + 1)
-            document = _document(grid, path, motion, bounds)
+        law = grid.law_document(motion, path.positions if grid.every > 1 else None)
+        found = gain_of(path, grid.law, grid.encoder, law, bounds, motion)
+        if found is not None:
+            return found
+    return None
+
+
+def gain_of(
+    path: Motion, law: FiniteLaw, losses: Losses, told: dict[str, Any], bounds: HandBounds | None, motion: str
+) -> Gain | None:
+    """A motion as the checker finds it, with as many more rounds as its way in costs; None without gain.
+
+    `path`: with rounds in which the law settles; `told`: the law as data; the rest as in `motion_document`.
+    """
+    for _ in range(3):  # rounds that settle the law, rounds that pay for the way in, and once more
+        document = motion_document("contact motion", losses, told, bounds, path, motion)
+        found = verify(document)
+        if found.energy is None or found.gain is None or found.gain <= 0:  # beyond the bounds, not settled
+            return None
+        if found.energy > 0:
+            unit = quantity_unit("position", motion)
+            witness = {**document, "energy_J": found.energy}
+            return Gain(witness, path, found.energy, found.gain, law, losses, unit)
+        path = path.repeated(path.rounds + ceil(-found.energy / found.gain) + 1)
     return None
 
 
@@ -164,7 +178,8 @@ def resting_places(
     return [x + count / 2 for x in inside if abs(law.force((x,))) <= friction]
 
 
-def _steps(start: Fraction, end: Fraction, most: Fraction) -> list[Fraction]:
+def straight(start: Fraction, end: Fraction, most: Fraction) -> list[Fraction]:
+    """From one position to another, each next one `most` away at most."""
     count = max(1, ceil(abs(end - start) / most))
     return [start + (end - start) * Fraction(k, count) for k in range(count + 1)]
 
@@ -174,20 +189,6 @@ def _settling(grid: Grid, samples: int) -> int:
     if grid.law.relaxing is None:
         return 20
     return 20 + ceil(64 / (1 - grid.law.relaxing[0]) / samples)
-
-
-def _recomputed(document: dict[str, Any], settling: int) -> tuple[Fraction, Fraction] | None:
-    """Energy and gain per round, over enough rounds for the law to settle; None without gain."""
-    document["repeats"]["times"] = max(document["repeats"]["times"], settling)
-    found = verify(document)
-    if found.energy is None or found.gain is None:  # it would leave the bounds, or does not settle
-        return None
-    return (found.energy, found.gain) if found.gain > 0 else None
-
-
-def _document(grid: Grid, motion: Motion, kind: str, bounds: HandBounds) -> dict[str, Any]:
-    law = grid.law_document(kind, motion.positions if grid.every > 1 else None)
-    return motion_document("contact motion", grid.encoder, law, bounds, motion, kind)
 
 
 def motion_document(
@@ -211,14 +212,6 @@ def motion_document(
         f"positions_{length}": list(path.positions),
         **switches,
     }
-
-
-def _witness(
-    grid: Grid, document: dict[str, Any], motion: Motion, energy: Fraction, per_round: Fraction, kind: str
-) -> Gain:
-    told, unit = {**document, "energy_J": energy}, "rad" if kind == "rotary" else "m"
-    whole = motion.repeated(int(document["repeats"]["times"]))
-    return Gain(told, whole, energy, per_round, grid.law, grid.encoder, unit)
 
 
 # Where the hand is best at the instant within a sample at which the force changes.

@@ -22,13 +22,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.checker import verify
 from zwidth.passivity.storage.domain import Losses
-from zwidth.passivity.storage.gain import Gain, motion_document, peak_force, resting_places
+from zwidth.passivity.storage.gain import Gain, gain_of, peak_force, resting_places
 from zwidth.passivity.storage.hand_bounds import HandBounds
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.wording import LARGEST_OF_HANDS, LONGEST_OF_HANDS, is_beyond_hands
+from zwidth.quantity.text import quantity_unit
 
 _MOVES = (1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 26, 34, 44)
 _RISES = 3  # that are tried, the largest ones, and of each slope
@@ -104,18 +104,9 @@ class _Slopes:
         x = (*before, *way, *[high] * turns.still, *way[-2::-1], *[low] * turns.still)
         switches = () if part == 1 else tuple(a + part * (b - a) for a, b in pairwise(x))
         path = Motion(x, switches, (Repeat(len(before), len(x) - 1, self.losses.delay + 3),))
-        for _ in range(2):  # rounds that settle, and rounds that pay for the way in
-            law = self.law.document(self.motion)
-            document = motion_document("contact motion", self.losses, law, self.bounds, path, self.motion)
-            found = verify(document)
-            if found.energy is None or found.gain is None or found.gain <= 0:
-                return None
-            if found.energy > 0:
-                told = {**document, "energy_J": found.energy}
-                gain = Gain(told, path, found.energy, found.gain, self.law, self.losses, self._unit)
-                return gain if self.most is None or peak_force(gain) <= self.most else None
-            path = path.repeated(path.rounds + ceil(-found.energy / found.gain) + 1)
-        return None
+        told = self.law.document(self.motion)
+        gain = gain_of(path, self.law, self.losses, told, self.bounds, self.motion)
+        return None if gain is None or (self.most is not None and peak_force(gain) > self.most) else gain
 
     def _turns(self) -> Iterator[_Turns]:
         """What is tried."""
@@ -210,7 +201,7 @@ class _Slopes:
 
     def _start(self, turns: _Turns) -> Fraction:
         """Where the hand begins: the nearest rest."""
-        return self._rests[int(np.argmin(abs(self._rests_in_counts - turns.low)))]
+        return min(self._rests, key=lambda rest: abs(float(rest) / self._count - turns.low))
 
     def _way_in(self, far: Fraction | float) -> int:
         """Samples on the way to the round, so many counts."""
@@ -232,12 +223,11 @@ class _Slopes:
 
     @cached_property
     def _rests(self) -> list[Fraction]:
-        ends = (None, None) if self.bounds is None else self.bounds.ends
-        return resting_places(self.law, self.losses, ends)
+        return resting_places(self.law, self.losses, self._bounds)
 
-    @cached_property
-    def _rests_in_counts(self) -> Floats:
-        return np.array(self._rests, dtype=np.float64) / self._count
+    @property
+    def _bounds(self) -> tuple[Fraction | None, Fraction | None]:
+        return (None, None) if self.bounds is None else self.bounds.ends
 
     @cached_property
     def _law(self) -> tuple[Floats, Floats]:
@@ -265,7 +255,7 @@ class _Slopes:
     @cached_property
     def _ends(self) -> tuple[float, float]:
         """Between which positions the hand may be."""
-        low, high = (None, None) if self.bounds is None else self.bounds.ends
+        low, high = self._bounds
         known = -inf if low is None else float(low), inf if high is None else float(high)
         return known[0] / self._count, known[1] / self._count
 
@@ -290,4 +280,4 @@ class _Slopes:
 
     @property
     def _unit(self) -> str:
-        return "rad" if self.motion == "rotary" else "m"
+        return quantity_unit("position", self.motion)

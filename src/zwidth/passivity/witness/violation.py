@@ -17,7 +17,6 @@ from typing import Any
 
 from zwidth.passivity.linear.criterion import LinearRefutation, frequency, offset_of
 from zwidth.passivity.linear.exact_algebra import is_schur
-from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.witness.motion import Motion, Pattern, best_waits, edge_crossing, realize, round_up
@@ -235,16 +234,12 @@ def _sized(setting: Setting, pattern: Pattern, times: int | None = None) -> Witn
     unit = _unit(setting, one)
     if unit is None:
         return None
-    if setting.resolution and _follower_is_long(setting.loop) and one.samples <= _MOST_ROUNDED:
+    is_long = sum(abs(c) for c in setting.loop.follower) > 1000  # on whole counts x = D w would be absurd
+    if setting.resolution and is_long and one.samples <= _MOST_ROUNDED:
         witness = _on_counts(setting, one, unit)
         if witness is not None:
             return witness
     return _scaled(setting, unit, lambda u, offset: realize(setting.loop, pattern, u, offset, times))
-
-
-def _follower_is_long(loop: LinearLoop) -> bool:
-    """True when x = D w on whole counts would make the motion absurdly large."""
-    return sum(abs(c) for c in loop.follower) > 1000
 
 
 def _on_counts(setting: Setting, one: Motion, unit: Fraction) -> Witness | None:

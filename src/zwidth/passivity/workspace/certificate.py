@@ -22,7 +22,7 @@ from zwidth.model.arms import Arm, DescribedArm, LeggedArm, PlanarChain, PosedAr
 from zwidth.model.arms.encoders import Chain, EncoderSteps, moving_steps
 from zwidth.model.arms.joints import as_matrix, surplus
 from zwidth.model.arms.null_space import NullSpaceSpring, moving, projector, task_jacobian
-from zwidth.model.arms.wall import MatrixWall, wall_matrices, wall_need
+from zwidth.model.arms.wall import MatrixWall, wall_matrices
 from zwidth.model.environment.environment import certain
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.certificate import FORMAT, Certificate
@@ -44,18 +44,12 @@ _CURVED = 2e-6
 """Of the curvature: the checker's lengths are longer by a millionth, and an eigenvalue is rounded."""
 
 
-def arm_certificate(
-    arm: Arm,
-    wall: Wall | MatrixWall,
-    rate: float,
-    delay_samples: int,
-    held: tuple[float, ...],
-    count: Counting | None = None,
-) -> tuple[Certificate | None, str]:
+def arm_certificate(question: Question, count: Counting | None = None) -> tuple[Certificate | None, str]:
     """A certificate that the checker accepts, and its words; or None, and why there is none.
 
     With `count` it is of the encoder steps, for forces up to its limits.
     """
+    arm = question.arm
     if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
         return None, "arms of this kind have no certificate"
     if why := unsaid(arm):
@@ -64,11 +58,10 @@ def arm_certificate(
         "format": FORMAT,
         "kind": "arm",
         "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else chain_document(arm),
-        "wall": wall_matrices_document(wall, arm.sites(2).jacobians.shape[-2]) | pose_document(arm),
-        "loop": _loop_document(arm, rate, delay_samples, held),
+        "wall": wall_matrices_document(question.wall, arm.sites(2).jacobians.shape[-2]) | pose_document(arm),
+        "loop": _loop_document(question, question.held_to),
     }
-    free = {**document, "loop": _loop_document(arm, rate, delay_samples, ())}
-    if not _is_of(free, arm, wall, 1 / rate, delay_samples):
+    if not _is_of({**document, "loop": _loop_document(question, ())}, arm, question):
         return None, "this arm moves in another way than its document can say"
     if count is not None and count.steps is not None and not isinstance(arm, LeggedArm):
         _add_steps(document, arm, count.steps, count.limits)
@@ -76,16 +69,14 @@ def arm_certificate(
     return Certificate((document,)) if found.valid else None, found.reason
 
 
-def _is_of(
-    document: dict[str, Any], arm: Written, wall: Wall | MatrixWall, period: float, delay_samples: int
-) -> bool:
+def _is_of(document: dict[str, Any], arm: Written, question: Question) -> bool:
     """At a few points the matrix that the checker reads out of the document is the one of the arm's own J.
 
     Where it is not ≻ 0 the checker has none; nor is the document a proof then.
     """
     sites = arm.sites(2)
     size, count = sites.jacobians.shape[-2:]
-    need = wall_need(wall, period, delay_samples, size)
+    need = question.need(size)
     taken = need.stiffness_share + need.bound
     damping, jacobians = as_matrix(arm.damping), sites.jacobians.reshape(-1, size, count)
     if isinstance(arm, LeggedArm):
@@ -260,18 +251,24 @@ def _raised(matrix: Array, turns: int) -> Array:
     return np.asarray(matrix + np.diag(more))
 
 
-def _loop_document(arm: Arm, rate: float, delay_samples: int, held: tuple[float, ...]) -> dict[str, Any]:
+def _clock(question: Question) -> dict[str, Any]:
+    return {
+        "sample_period_s": exact_text(1 / decimal_of(question.rate)),
+        "delay_samples": question.delay_samples,
+    }
+
+
+def _loop_document(question: Question, held: tuple[float, ...]) -> dict[str, Any]:
     loop: dict[str, Any] = {
-        "sample_period_s": exact_text(1 / decimal_of(rate)),
-        "delay_samples": delay_samples,
+        **_clock(question),
         "encoder": "ideal",
         "torque": "held" if held else "follows the arm",
     }
     if held:
-        assert arm.curvature is not None
+        assert question.arm.curvature is not None
         force, *moment = held
         loop["largest_force_N"] = text(force)
-        loop["curvature_m_per_rad2"] = text(arm.curvature * (1 + _CURVED))
+        loop["curvature_m_per_rad2"] = text(question.arm.curvature * (1 + _CURVED))
         if moment:
             loop["largest_moment_N_m"] = text(moment[0])
     return loop
@@ -369,10 +366,7 @@ def _begun(question: Question, spring: NullSpaceSpring) -> tuple[dict[str, Any] 
         "arm": machine,
         "wall": wall_matrices_document(question.wall, len(task_jacobian(arm, spring.rest)))
         | pose_document(arm),
-        "loop": {
-            "sample_period_s": exact_text(1 / decimal_of(question.rate)),
-            "delay_samples": question.delay_samples,
-        },
+        "loop": _clock(question),
         "spring": {
             "stiffness_N_m_per_rad": text(spring.stiffness),
             "damping_N_m_s_per_rad": text(spring.damping),

@@ -333,15 +333,19 @@ def _factor(question: Question, spring: NullSpaceSpring) -> float:
     """How many times as stiff the wall alone may be at the rest."""
     jacobian = task_jacobian(question.arm, spring.rest)
     need = question.need(len(jacobian))
-    base = as_matrix(question.arm.damping) - jacobian.T @ need.bound @ jacobian
-    free = np.ix_(moving(question.arm), moving(question.arm))
-    return float(largest_scale(base[free], (jacobian.T @ need.stiffness_share @ jacobian)[free]))
+    load = jacobian.T @ need.stiffness_share @ jacobian
+    return _largest_scale(question.arm, jacobian.T @ need.bound @ jacobian, load)
 
 
 def _largest_damping(question: Question, spring: NullSpaceSpring) -> float:
     inside, needed = needed_at_rest(question, spring)
-    free = np.ix_(moving(question.arm), moving(question.arm))
-    return float(largest_scale((as_matrix(question.arm.damping) - needed)[free], inside[free]))
+    return _largest_scale(question.arm, needed, inside)
+
+
+def _largest_scale(arm: Arm, taken: Array, load: Array) -> float:
+    """How many times the load the joints that move pay for beside what is taken."""
+    free = np.ix_(moving(arm), moving(arm))
+    return float(largest_scale((as_matrix(arm.damping) - taken)[free], load[free]))
 
 
 def _loop(loop: Loop, motion: ArmMotion) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from zwidth.model.arms import Arm, ArmMotion, DescribedArm
 from zwidth.model.arms.encoders import covered_factors
 from zwidth.model.arms.joints import largest_scale, least_additions, surplus
 from zwidth.model.arms.replay import refuting_motion
-from zwidth.model.arms.wall import MatrixWall, wall_matrices
+from zwidth.model.arms.wall import MatrixWall, WallNeed, wall_matrices
 from zwidth.model.environment.wall import Wall
 from zwidth.passivity.advice import Advice, Kind, with_what_to_do
 from zwidth.passivity.result import PassivityAnswer, share_left
@@ -107,9 +107,11 @@ class PostureMap(PassivityAnswer):
     @answers(unit="N/m")
     def largest_stiffness(self) -> float | None:
         """The stiffest wall of this kind at every posture tried [N/m]; None of a wall in pose."""
-        wall, arm = self.question.wall, self.question.arm
-        size = 3 + arm.turns
-        return None if arm.turns else float(scaled_stiffness(wall, np.array(self.stiffness_factor), size))
+        return None if self.question.arm.turns else self._times(self.stiffness_factor)
+
+    def _times(self, factor: float) -> float:
+        """The largest stiffness of so many times the wall, at a point [N/m]."""
+        return float(scaled_stiffness(self.question.wall, np.array(factor), 3))
 
     @property
     def claim(self) -> str:
@@ -118,20 +120,13 @@ class PostureMap(PassivityAnswer):
         of = ", ".join([f"{self.tried} postures over the joint ranges", *getattr(arm, "locked", ())])
         after = [OF_JOINTS_THAT_GIVE_WAY] if arm.transmissions else []
         if steepest >= 1:
-            told = with_what_to_do(
-                f"At each of {of}, the joints have the damping that this wall asks for",
-                self.advice,
-                "passive",
+            told = f"At each of {of}, the joints have the damping that this wall asks for"
+            after.insert(
+                0,
+                "Between them nothing is proved, and so it is undecided; a map of two joints is proved: "
+                "leave out --postures, in Python zwidth.workspace.",
             )
-            return " ".join(
-                [
-                    told,
-                    "Between them nothing is proved, and so it is undecided; a map of two joints is proved: "
-                    "leave out --postures, in Python zwidth.workspace.",
-                    *after,
-                ]
-            )
-        if self.motion is None:
+        elif self.motion is None:
             found = "looked for" if arm.transmissions else "found that takes energy out"
             told = f"At some of {of}, the condition fails, and no motion was {found}"
         else:
@@ -140,7 +135,8 @@ class PostureMap(PassivityAnswer):
                 after.append(
                     "These are hands that hold the links, such as one at the elbow and one at the end."
                 )
-        return " ".join([with_what_to_do(told, self.advice, "active"), *after])
+        outcome = "passive" if steepest >= 1 else "active"
+        return " ".join([with_what_to_do(told, self.advice, outcome), *after])
 
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
@@ -159,21 +155,17 @@ class PostureMap(PassivityAnswer):
     @cached_property
     def _additions(self) -> tuple[float, ...]:
         """The least damping that the joints lack at the worst posture [N·m·s/rad]."""
-        size = 3 + self.question.arm.turns
-        need = self.question.need(size)
-        assert isinstance(self.question.arm, DescribedArm)
-        jacobian = self.question.arm.placed(np.array([self.worst]))[1]
-        lacking = surplus(jacobian, self.question.damping(size), need.stiffness_share + need.bound)
+        _, jacobian, need, damping = _placed(self.question, np.array([self.worst]))
+        lacking = surplus(jacobian, damping, need.stiffness_share + need.bound)
         return tuple(least_additions(lacking)[0].tolist())
 
     @property
     def scope(self) -> Scope:
         """A wall on both sides of its rest, read without steps, at the postures tried."""
-        held = bool(self.question.held_to)
         return Scope(
             contact="both sides",
             encoder="not counted" if any(self.question.arm.resolution) else "ideal",
-            torque="held" if held else "follows the arm",
+            torque="held" if self.question.torque_held else "follows the arm",
             region="the postures that were tried",
             transmission=between(self.question.arm),
         )
@@ -190,12 +182,8 @@ class PostureMap(PassivityAnswer):
         elif self.largest_stiffness is None:
             yield "stiffness", f"{_down(self.stiffness_factor)} times everywhere, {_down(best)} times at best"
         else:
-            most = float(scaled_stiffness(self.question.wall, np.array(best), 3))
-            everywhere = shown_at_most(self.largest_stiffness, "N/m")
-            yield (
-                "largest stiffness",
-                f"{everywhere} at every posture tried, {shown_at_most(most, 'N/m')} at the best",
-            )
+            everywhere, most = (shown_at_most(k, "N/m") for k in (self.largest_stiffness, self._times(best)))
+            yield "largest stiffness", f"{everywhere} at every posture tried, {most} at the best"
         if self.damping_factor is not None:
             yield "virtual damping", self._damping(self.damping_factor)
         if self.encoder_factor is not None:
@@ -225,7 +213,7 @@ class PostureMap(PassivityAnswer):
             return "Coulomb friction does not cover those of the virtual damping: it may buzz"
         most = f"{_down(factor)} times this stiffness"
         if not self.question.arm.turns:
-            most = shown_at_most(float(scaled_stiffness(self.question.wall, np.array(factor), 3)), "N/m")
+            most = shown_at_most(self._times(factor), "N/m")
         return f"Coulomb friction covers them up to {most}, by a light touch; a stiffer wall may buzz"
 
     def numbers(self) -> dict[str, Any]:
@@ -280,27 +268,22 @@ def stiffness_over_postures(
         raise InputError(f"postures must be a whole number from 100 to {MOST_POSTURES}, got {postures!r}")
     question = asked_of(arm, wall, rate, delay, cells, None, None)
     places = _drawn(arm, postures)
-    factors, positions, covered = _factors(question, places)
-    worst = places[np.argsort(factors)[:_WORST]]
+    drawn = _factors(question, places)
+    worst = places[np.argsort(drawn[0])[:_WORST]]
     followed, lowest = _followed(question, worst, lambda near: _factors(question, near)[0])
     at = int(np.argmin(lowest))
     more = _factors(question, followed)
     motion = _refuted(question, followed[np.argsort(lowest)]) if lowest[at] < 1 else None
+    factors, positions, covered = (np.concatenate(both) for both in zip(drawn, more, strict=True))
     return PostureMap(
         question=question,
         tried=postures,
-        data=_by_place(
-            question,
-            np.concatenate([factors, more[0]]),
-            np.concatenate([positions, more[1]]),
-            np.concatenate([covered, more[2]]),
-            cells,
-        ),
+        data=_by_place(question, factors, positions, covered, cells),
         stiffness_factor=float(lowest[at]),
         worst=tuple(followed[at].tolist()),
         motion=motion,
         damping_factor=_least_damping_factor(question, places),
-        encoder_factor=float(min(covered.min(), more[2].min())) if any(arm.resolution) else None,
+        encoder_factor=float(covered.min()) if any(arm.resolution) else None,
     )
 
 
@@ -314,12 +297,8 @@ def _drawn(arm: DescribedArm, count: int) -> Array:
 
 def _factors(question: Question, places: Array) -> tuple[Array, Array, Array]:
     """How many times as stiff the wall may be at each place, where the hand is, and what the steps allow."""
-    arm = question.arm
-    assert isinstance(arm, DescribedArm)
-    size = 3 + arm.turns
-    need = question.need(size)
-    damping, found, covered = question.damping(size), list[Array](), list[Array]()
-    positions, jacobians = arm.placed(places)
+    arm, found, covered = question.arm, list[Array](), list[Array]()
+    positions, jacobians, need, damping = _placed(question, places)
     for start in range(0, len(places), _AT_ONCE):
         some = jacobians[start : start + _AT_ONCE]
         found.append(stiffness_factors(damping, need, some))
@@ -327,6 +306,13 @@ def _factors(question: Question, places: Array) -> tuple[Array, Array, Array]:
             covered.append(covered_factors(arm, question.wall, question.period, some))
     steps = np.concatenate(covered) if covered else np.full(len(places), np.inf)
     return np.concatenate(found), positions[:, :3], steps
+
+
+def _placed(question: Question, places: Array) -> tuple[Array, Array, WallNeed, Array]:
+    """Where the hand is at each place, J there, what the wall asks for and what the joints have for it."""
+    assert isinstance(question.arm, DescribedArm)
+    size = 3 + question.arm.turns
+    return (*question.arm.placed(places), question.need(size), question.damping(size))
 
 
 def _least_damping_factor(question: Question, places: Array) -> float | None:
@@ -343,14 +329,9 @@ def _damping_factors(question: Question, places: Array) -> Array:
 
     s = it: with B ⪰ 0 and no delay δ_m − Jᵀ(KT/2 − B cos θ)J ⪰ 0 wherever −cos θ ≤ s.
     """
-    arm = question.arm
-    assert isinstance(arm, DescribedArm)
-    size = 3 + arm.turns
-    need = question.need(size)
-    jacobians = arm.placed(places)[1]
+    _, jacobians, need, damping = _placed(question, places)
     load = np.swapaxes(jacobians, -1, -2) @ need.bound @ jacobians
-    base = surplus(jacobians, question.damping(size), need.stiffness_share)
-    return largest_scale(base, load)
+    return largest_scale(surplus(jacobians, damping, need.stiffness_share), load)
 
 
 def _followed(question: Question, places: Array, measure: Callable[[Array], Array]) -> tuple[Array, Array]:
@@ -359,13 +340,12 @@ def _followed(question: Question, places: Array, measure: Callable[[Array], Arra
     assert isinstance(arm, DescribedArm)
     low, high = np.array(arm.joint_range).T
     steps = np.random.default_rng(0).normal(size=(_ROUNDS, _AROUND, len(low)))
-    lowest = measure(places)
+    lowest, rows = measure(places), np.arange(len(places))
     for turn in range(_ROUNDS):
         near = places[:, None] + _FIRST * 0.5**turn * (high - low) * steps[turn]
         near = np.clip(near, low, high).reshape(-1, len(low))
         values = measure(near).reshape(len(places), _AROUND)
         best = values.argmin(axis=1)
-        rows = np.arange(len(places))
         better = values[rows, best] < lowest
         chosen = near.reshape(len(places), _AROUND, -1)[rows, best]
         places = np.where(better[:, None], chosen, places)
@@ -392,8 +372,7 @@ def _by_place(
         np.clip(np.searchsorted(edge, v, side="right") - 1, 0, cells - 1)
         for edge, v in zip(edges, (radius, height), strict=True)
     )
-    least, most = np.full((cells, cells), np.inf), np.full((cells, cells), -np.inf)
-    steps = least.copy()
+    least, most, steps = (np.full((cells, cells), v) for v in (np.inf, -np.inf, np.inf))
     count = np.zeros((cells, cells), dtype=np.int64)
     np.minimum.at(least, place, factors)
     np.maximum.at(most, place, factors)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -107,7 +107,11 @@ def asked_of(
     asked = forces_of(arm, largest_force, "largest_force")
     if held_to and asked:
         raise InputError("torque_held_up_to says the largest force already; leave largest_force out")
-    needs_encoders(arm, asked)
+    if asked and with_encoders(arm) is None:
+        raise InputError(
+            "largest_force bounds what encoder steps cost, and needs a chain or a description with the "
+            "resolution of its joints, as in --joint-resolution 0.001"
+        )
     arm = arm.at_motors
     return Question(arm=arm, wall=wall, rate=hertz, delay_samples=delay_samples, held_to=held_to, asked=asked)
 
@@ -131,9 +135,6 @@ def _delay_samples(rate: float, delay: float) -> int:
     return samples
 
 
-Array = npt.NDArray[np.float64]
-
-
 @dataclass(frozen=True, kw_only=True)
 class Counting:
     """What encoder steps before a wall ask of friction; None where there are none, or nothing is known.
@@ -143,59 +144,42 @@ class Counting:
     """
 
     steps: EncoderSteps | None
-    limits: tuple[float, ...]
+    limits: Forces
     reason: str
 
 
-def counting(
-    arm: Arm, wall: Wall | MatrixWall, period: float, sites: Sites, asked: tuple[float, ...]
-) -> Counting:
-    """Up to the forces that are `asked` for, or empty: as far as it goes."""
+def counting(question: Question, sites: Sites) -> Counting:
+    """Up to the forces that are asked about, or where there are none as far as it goes."""
+    arm, asked = question.arm, question.forces
     if not any(arm.resolution):
         return Counting(steps=None, limits=(), reason="none are known")
-    steps = encoder_steps(arm, wall, period, sites)
+    steps = encoder_steps(arm, question.wall, question.period, sites)
+    limits: Forces = ()
     if steps is None:
-        known = "how the Jacobian of such an arm changes over a step is not bounded"
-        return Counting(steps=None, limits=(), reason=known)
-    if not any(arm.coulomb_friction):
-        return Counting(steps=steps, limits=(), reason="they need Coulomb friction, and none is given")
-    if not asked:
-        reason = "" if steps.covered else "Coulomb friction is too small for them at any force"
-        return Counting(steps=steps, limits=steps.covered, reason=reason)
-    needed = steps.friction_up_to(*asked)
-    if all(float(own) >= need for own, need in zip(arm.coulomb_friction, needed, strict=True)):
-        return Counting(steps=steps, limits=asked, reason="")
-    return Counting(steps=steps, limits=(), reason=_too_small(steps, asked))
+        reason = "how the Jacobian of such an arm changes over a step is not bounded"
+    elif not any(arm.coulomb_friction):
+        reason = "they need Coulomb friction, and none is given"
+    elif asked and _is_enough(arm, steps.friction_up_to(*asked)):
+        limits, reason = asked, ""
+    elif not steps.covered:
+        reason = "Coulomb friction is too small for them at any force"
+    elif asked:
+        covered = f"Coulomb friction covers them up to {in_words(steps.covered)}"
+        reason = f"{covered}, and not up to {in_words(asked)}"
+    else:
+        limits, reason = steps.covered, ""
+    return Counting(steps=steps, limits=limits, reason=reason)
 
 
-def needs_encoders(arm: Arm, asked: tuple[float, ...]) -> None:
-    """Refuse a largest force for steps that nobody knows."""
-    if asked and with_encoders(arm) is None:
-        raise InputError(
-            "largest_force bounds what encoder steps cost, and needs a chain or a description with the "
-            "resolution of its joints, as in --joint-resolution 0.001"
-        )
+def _is_enough(arm: Arm, needed: Iterable[float]) -> bool:
+    return all(float(own) >= need for own, need in zip(arm.coulomb_friction, needed, strict=True))
 
 
-def with_motion(
-    found: Counting,
-    arm: Arm,
-    wall: Wall | MatrixWall,
-    period: float,
-    delay_samples: int,
-    sites: Sites,
-    torque_held: bool,
-) -> EncoderSteps | None:
+def with_motion(found: Counting, question: Question, sites: Sites) -> EncoderSteps | None:
     """The steps with the smallest force at which a motion across their edges is known to take energy out."""
-    chain, steps = with_encoders(arm), found.steps
-    if chain is None or steps is None or wall.clamped or arm.transmissions:
+    chain, steps = with_encoders(question.arm), found.steps
+    if chain is None or steps is None or question.wall.clamped or question.arm.transmissions:
         return steps  # a wall that never pulls has a normal, and the motion's forces may not be along it
-    motion = first_motion(chain, wall, period, delay_samples, sites.joints, torque_held)
+    loop = (question.wall, question.period, question.delay_samples)
+    motion = first_motion(chain, *loop, sites.joints, question.torque_held)
     return steps if motion is None else replace(steps, refuted=motion.largest_force, motion=motion)
-
-
-def _too_small(steps: EncoderSteps, asked: tuple[float, ...]) -> str:
-    if not steps.covered:
-        return "Coulomb friction is too small for them at any force"
-    up_to = f"Coulomb friction covers them up to {in_words(steps.covered)}"
-    return f"{up_to}, and not up to {in_words(asked)}"

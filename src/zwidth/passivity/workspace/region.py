@@ -91,7 +91,7 @@ def workspace(
     fine = sites if parts == 1 else arm.sites(points * parts)
     account = account_of(damping, need.stiffness_share + need.bound, fine, arm.turns)
     factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
-    count = counting(arm, wall, period, fine, question.forces)
+    count = counting(question, fine)
     found = evidence_for(question, count, sites, fine, account)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
@@ -104,17 +104,8 @@ def workspace(
         limits = count.limits or limits
     columns = columns_of(arm, damping, wall, need, sites, reached, period, limits)
     factor = min(columns["stiffness_factor"][0].min(), factors.min())
-    covers = Covers(
-        region=fine.region,
-        torque="held" if question.torque_held else "follows",
-        encoder=found.encoder,
-        forces=limits,
-        why_ideal=(count.reason or _OUTSIDE) if any(arm.resolution) else "",
-        can_be_refuted=arm.joint_count <= n and not arm.transmissions,
-        has_friction=any(arm.coulomb_friction),
-        gives_way=bool(arm.transmissions),
-        period=period,
-    )
+    why_ideal = (count.reason or _OUTSIDE) if any(arm.resolution) else ""
+    covers = Covers(question, fine.region, limits, why_ideal)
     return Workspace(
         outcome=outcome,
         found=what_was_found(outcome, covers, account, found),
@@ -127,12 +118,12 @@ def workspace(
         added=Additions(question=question, points=account.points, cells=account.counted),
         stiffness_factor=float(factor),
         largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
-        region=covers.region,
-        torque=covers.torque,
-        encoder=covers.encoder,
-        largest_forces=covers.forces,
+        region=fine.region,
+        torque="held" if question.torque_held else "follows",
+        encoder=found.encoder,
+        largest_forces=limits,
         encoder_steps=found.steps,
-        can_be_refuted=covers.can_be_refuted,
+        can_be_refuted=arm.joint_count <= n and not arm.transmissions,
         motion=found.motion,
         certificate=found.certificate,
     )
@@ -151,15 +142,10 @@ def _outcome(found: Evidence, question: Question, everywhere: bool) -> Outcome:
 class Covers(NamedTuple):
     """What a verdict on an arm is about."""
 
+    question: Question
     region: str
-    torque: str
-    encoder: str
-    forces: tuple[float, ...]
+    forces: Forces
     why_ideal: str  # why the steps of an arm that has some are not counted
-    can_be_refuted: bool
-    has_friction: bool  # whether any Coulomb friction is given
-    gives_way: bool  # whether joints do between motor and link
-    period: float  # T [s]
 
 
 def what_was_found(outcome: str, covers: Covers, account: Account, found: Evidence) -> str:
@@ -173,53 +159,46 @@ def what_was_found(outcome: str, covers: Covers, account: Account, found: Eviden
     if outcome == "theorem":
         return f"No motion of the hand takes energy out with {where}, by a proof on paper"
     if found.motion is not None:
-        return f"At one point of this map {moved(found.motion, covers.period)}"
+        return f"At one point of this map {moved(found.motion, covers.question.period)}"
     if not (account.margins >= 0).all():
         return (
             f"{part} of the region are proved; at other points the condition fails, and no motion was "
-            f"{'looked for' if covers.gives_way else 'found that takes energy out'}"
+            f"{'looked for' if covers.question.arm.transmissions else 'found that takes energy out'}"
         )
-    if _is_of_encoders(covers, found):
+    if found.encoder == "counted" and found.words:
         return f"Whether a motion takes energy out behind these encoders is not known: {found.words}"
     return f"The condition holds at every point; between the points {part} of the region are proved"
 
 
 def besides(outcome: str, covers: Covers, account: Account, found: Evidence) -> str:
     """What is not counted, and how the arm is read."""
-    told = list[str]()
+    told, arm = list[str](), covers.question.arm
     if found.motion is not None and found.motion.imposed_by == "links":
         told.append(
             "These are hands that hold the links, such as one at the elbow and one at the end; a hand at the "
             "end alone cannot make every joint follow, and of it nothing is said."
         )
-    if found.motion is not None and covers.encoder == "counted" and not covers.has_friction:
+    if found.motion is not None and found.encoder == "counted" and not any(arm.coulomb_friction):
         told.append("Coulomb friction is not given and taken as 0.")
-    said = _is_of_encoders(covers, found) and (account.margins >= 0).all()
+    said = found.encoder == "counted" and (account.margins >= 0).all()
     if outcome in ("theorem", "undecided") and found.words and not said:
         told.append(f"There is no certificate: {found.words}.")
     if not account.reached.all():
         told.append("Parts of the region are out of reach; a smaller region may be proved.")
-    if covers.gives_way:
+    if arm.transmissions:
         told.append(OF_JOINTS_THAT_GIVE_WAY)
-    return " ".join([*told, f"{_counted(covers, outcome)}{_beyond(covers, found.steps, outcome)}"])
+    return " ".join([*told, f"{_counted(covers, found.encoder, outcome)}{_beyond(found.steps, outcome)}"])
 
 
-def _is_of_encoders(covers: Covers, found: Evidence) -> bool:
-    return covers.encoder == "counted" and bool(found.words)
-
-
-def _counted(covers: Covers, outcome: str) -> str:
+def _counted(covers: Covers, encoder: str, outcome: str) -> str:
     """How the arm is read, and what becomes of the torque within a period."""
     up_to = _up_to(covers) if outcome == "undecided" else ""  # what is proved says it first
-    if covers.encoder == "counted":
-        torque = (
-            "is held over a period" if covers.torque == "held" else "follows the readings within a period"
-        )
+    held = covers.question.torque_held
+    if encoder == "counted":
+        torque = "is held over a period" if held else "follows the readings within a period"
         read = "force and Jacobian are those of the readings"
         return f"Encoder steps are counted{up_to}: {read}, and the torque {torque}."
-    torque = (
-        f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
-    )
+    torque = f"held over a period{up_to}" if held else "taken to follow the arm within a period"
     steps = f" Encoder steps are not counted: {covers.why_ideal}." if covers.why_ideal else ""
     return f"The arm is taken to be read without steps.{steps} The torque is {torque}."
 
@@ -230,14 +209,12 @@ def _up_to(covers: Covers) -> str:
     return f", for wall forces up to {in_words(covers.forces)}"
 
 
-def _beyond(covers: Covers, steps: EncoderSteps | None, outcome: str) -> str:
+def _beyond(steps: EncoderSteps | None, outcome: str) -> str:
     """From which force on a motion across the edges of the encoders is known."""
     if steps is None or steps.refuted is None or outcome == "active":
         return ""
     return f" From {shown(steps.refuted, 'N', 4)} on a motion across their edges takes energy out."
 
-
-Array = npt.NDArray[np.float64]
 
 _TRIES = 20
 """Points from which a motion that takes energy out is sought, the worst first."""
@@ -261,8 +238,7 @@ def evidence_for(
 
     Motions are looked for in the `fine` cells of the account; across the edges of encoders in `sites`.
     """
-    loop = (question.arm, question.wall, question.period, question.delay_samples)
-    steps = with_motion(count, *loop, sites, question.torque_held)
+    steps = with_motion(count, question, sites)
     certificate, words, encoder = None, "", "counted" if question.asked else "ideal"
     if account.reached.all() and (account.margins > 0).all():
         certificate, words, encoder = _proof(question, count)
@@ -279,13 +255,12 @@ def evidence_for(
 
 def _proof(question: Question, count: Counting) -> tuple[Certificate | None, str, str]:
     """A certificate or why there is none, and of which encoder: of the steps, if it can be or has to be."""
-    loop = (question.arm, question.wall, question.rate, question.delay_samples, question.held_to)
     certificate, words = None, count.reason
     if count.limits and count.steps is not None:
-        certificate, words = arm_certificate(*loop, count)
+        certificate, words = arm_certificate(question, count)
     if certificate is not None or question.asked:
         return certificate, words, "counted"
-    return (*arm_certificate(*loop), "ideal")
+    return (*arm_certificate(question), "ideal")
 
 
 def _across(motion: ArmMotion | None, asked: Forces, covered: Forces) -> ArmMotion | None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import inf, isfinite
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +21,7 @@ from zwidth.model.environment.wall import Wall
 from zwidth.passivity.advice import Advice, Kind, with_what_to_do
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import PassivityAnswer, share_left
-from zwidth.passivity.scope import Outcome, Scope, Torque, Transmission
+from zwidth.passivity.scope import Encoder, Outcome, Scope, Torque, Transmission
 from zwidth.passivity.workspace.certificate import arm_certificate
 from zwidth.passivity.workspace.mapped import scaled_stiffness
 from zwidth.passivity.workspace.question import Question
@@ -182,9 +182,10 @@ class Workspace(PassivityAnswer):
         """What the outcome is about: the wall pulls and pushes about its point of rest."""
         limits: tuple[float | None, ...] = (*self.largest_forces, None, None)
         follows: Torque = "follows the readings" if self.encoder == "counted" else "follows the arm"
+        left_out: Encoder = "not counted" if any(self.arm.resolution) else "ideal"
         return Scope(
             contact="both sides",
-            encoder="counted" if self.encoder == "counted" else self._encoder_left_out,
+            encoder="counted" if self.encoder == "counted" else left_out,
             largest_force=limits[0],
             largest_moment=limits[1],
             torque="held" if self.torque == "held" else follows,
@@ -192,10 +193,6 @@ class Workspace(PassivityAnswer):
             transmission=between(self.arm),
             motion="linear",
         )
-
-    @property
-    def _encoder_left_out(self) -> Literal["ideal", "not counted"]:
-        return "not counted" if any(self.arm.resolution) else "ideal"
 
     @cached_property
     def claim(self) -> str:
@@ -451,9 +448,7 @@ class Additions:
         return Addition(_numbers(enough), _numbers(fails))
 
     def _proves(self, **changed: Any) -> bool:
-        asked = replace(self.question, **changed)
-        loop = (asked.arm, asked.wall, asked.rate, asked.delay_samples, asked.held_to)
-        return arm_certificate(*loop)[0] is not None
+        return arm_certificate(replace(self.question, **changed))[0] is not None
 
 
 def _stiffer(wall: Wall | MatrixWall, times: float) -> Wall | MatrixWall:
