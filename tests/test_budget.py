@@ -17,27 +17,27 @@ SOURCE = Path(zw.__file__).parent
 FILES = [path for ending in ("py", "pyi") for path in SOURCE.rglob(f"*.{ending}")]
 
 LINES = {
-    "beside the rooms": 1110,
-    "checker": 10393,
-    "cli": 10605,
-    "data": 22775,
-    "links": 2344,
-    "loop": 7003,
-    "machine": 17619,
-    "model": 17691,
-    "native": 1648,
-    "passivity": 28157,
-    "quantity": 2005,
-    "show": 9148,
-    "study": 5638,
+    "beside the rooms": 1140,
+    "checker": 10458,
+    "cli": 10510,
+    "data": 22692,
+    "links": 2321,
+    "loop": 6979,
+    "machine": 17397,
+    "model": 17709,
+    "native": 1578,
+    "passivity": 28339,
+    "quantity": 2074,
+    "show": 8992,
+    "study": 5549,
 }
 """Of source, at most, in each room."""
 
-IN_ALL = 136136
-PHYSICS = 65249
+IN_ALL = 135738
+PHYSICS = 65559
 """Lines of quantity, model, loop, passivity and checker."""
 
-FILES_IN_ALL, IN_A_FOLDER = 670, 25
+FILES_IN_ALL, IN_A_FOLDER = 671, 25
 
 ALONE = 135
 """Files that one other file alone imports."""

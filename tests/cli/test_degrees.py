@@ -114,8 +114,6 @@ def test_the_unit_of_a_range_is_of_both_its_ends(run):
         ("simulate wheel.toml --operator hands-off --duration 1", '--initial-velocity "360 deg/s"'),
         (f"simulate haptic-paddle --stiffness 300 {HANDS}", "holds a device that turns"),
         (f"map other.toml {MAP}", "a map is of walls"),
-        ("check moza-r9 --stiffness '2 N*m/deg' --law force-bounding", 'give yours, --delay "1 ms"'),
-        (f"simulate moza-r9 --stiffness 1 {HANDS}", "zwidth check moza-r9"),
     ],
 )
 def test_what_cannot_be_is_said(refused, line, part):

@@ -88,7 +88,7 @@ REFUSED = {
         "--target arduino --prefix guard": "guard.h is a file of the main program",
         "--number fixed --resolution unknown": "resolution",
         "--rate '990 .. 1010 Hz'": "interval",
-        "--delay '0 .. 0.2 ms' --law passivity-controller": "give one number",
+        "--delay '0 .. 0.2 ms' --law passivity-controller": "reckon with one number",
         "--force-unit -1": "--force-unit must be > 0",
     },
     "sweep haptic-paddle": {
@@ -123,7 +123,7 @@ REFUSED = {
     "map haptic-paddle --stiffness 0:600 --virtual-damping 0:0.3": {
         "--damping 0:1": "--virtual-damping LOW:HIGH",
         "--cells 40": "--cells is written NxM",
-        "--cells 40xmany": "whole numbers",
+        "--cells 40xmany": "a whole number",
         "--hands fingr": "did you mean",
         "--plot map.gif": "must end in",
         "--plot a.png --certify a.png": "--plot and --certify",

@@ -248,7 +248,7 @@ def test_files_of_joints_that_cannot_be_used(refused, text, options, words):
 
 def test_joints_by_file_and_by_options(run):
     Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]", encoding="utf-8")
-    run(f"{TWO_LINK} --joint-damping 0.02,0.01").says("joint damping 0.02, 0.01 N·m·s/rad")
+    run(f"{TWO_LINK} --joint-damping 0.02,0.01").says("joint damping 0.02 N·m·s/rad, 0.01 N·m·s/rad")
 
 
 TWO_LINKS = """<robot name="two"><link name="base"/><link name="upper"/><link name="lower"/><link name="tip"/>
@@ -302,7 +302,7 @@ def test_a_finger_without_damping_is_named_and_what_is_typed_works(run, refused,
     found = [run(f"{line} {option} --json", status).json for option in typed]
     assert [len(each["joint_damping_N_m_s_rad"]) for each in found] == [4, 4]
     assert found[0]["largest_stiffness_N_per_m"] < found[1]["largest_stiffness_N_per_m"]
-    assert more or "left_joint locked at 0.1 m" in run(f"{line} {typed[0]}").words
+    assert more or "left_joint locked at 100 mm" in run(f"{line} {typed[0]}").words
     assert "no damping is left in left_joint" in refused(f"{line} --joint-damping 1,1,1,1,0")
     assert "pan_joint, lift_joint" in refused(f"{line} --joint-damping 1,1,1,1")
     assert "arm, 4 joints" in run(f"{line} --frame wrist --joint-damping 1,1,1,1", status).words

@@ -38,6 +38,27 @@ def test_every_text_with_a_unit_is_read_where_a_number_is():
 
 
 @pytest.mark.parametrize(
+    ("law", "motion", "wanted"),
+    [
+        (
+            zw.Wall("300 N/m"),
+            "rotary",
+            r"stiffness is given in N/m, and the device turns: give it in N\*m/rad",
+        ),
+        (zw.Wall(3, "1 N*m*s/rad"), "linear", r"damping is given in N\*m\*s/rad, and the device slides"),
+        (zw.NonlinearSpring(["0 deg", "9 deg"], [0, 1]), "linear", "positions is given in rad"),
+        (zw.render(zw.Wall("300 N/m"), zw.rendering.Saturation()), "rotary", "stiffness is given in N/m"),
+    ],
+)
+def test_units_of_another_motion_are_refused_by_the_device(law, motion, wanted):
+    """An environment knows no device when it reads a text: 300 N/m was 300 N·m/rad to a wheel."""
+    device = zw.Device(damping=1, coulomb_friction=1, resolution=1e-4, rate=1000, motion=motion)
+    for ask in (zw.check, zw.limit, lambda *loop: zw.simulate(*loop, zw.operators.HandsOff(), 0.1)):
+        with pytest.raises(zw.InputError, match=wanted):
+            ask(device, law)
+
+
+@pytest.mark.parametrize(
     ("make", "said"),
     [
         (lambda: zw.Wall(-1), "stiffness must be ≥ 0, got -1: a negative spring pulls the hand in and gives"),

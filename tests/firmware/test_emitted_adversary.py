@@ -112,7 +112,7 @@ def test_no_motion_gains_from_the_emitted_law(tmp_path: Path) -> None:
 def test_a_delay_is_not_left_out() -> None:
     """Force bounding is proved without delay: neither a delay nor an interval of them is taken for none."""
     late = PADDLE.replace(delay=zw.Interval(0, zw.Exact("0.0002")))
-    with pytest.raises(InputError, match="give one number"):
+    with pytest.raises(InputError, match="reckon with one number"):
         zw.emit(late, STIFF, number="float")
     with pytest.raises(InputError, match="not emitted"):
         zw.emit(PADDLE.replace(delay="0.2 ms"), STIFF, number="float")

@@ -245,7 +245,7 @@ IIR = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         ((SPRING[0], SAMPLED), {"parameter": "rate"}, "made for one sample period, so no other rate"),
         ((SPRING[0], SAMPLED), {"parameter": "sample_period"}, "so no other sample period can be asked for"),
         (SPRING, {"parameter": "velocity_filter"}, "not one number"),
-        (SPRING, {"parameter": "motion"}, "no single value"),
+        (SPRING, {"parameter": "motion"}, "no parameter"),
         (SPRING, {"parameter": None}, "parameter"),
         (PADDLE, {"parameter": "mass"}, "mass plays no part.*moves every mass"),
         (PADDLE, {"parameter": "device.mass", "penetration": "1e-3", "speed": "0.1"}, "mass plays no part"),

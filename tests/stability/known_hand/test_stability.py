@@ -196,7 +196,7 @@ def test_rouths_test_agrees_with_the_schur_cohn_recursion() -> None:
 @pytest.mark.parametrize(
     ("ask", "said"),
     [
-        (lambda: coupled(zw.Device(damping=1, rate=1000), zw.Wall(1)), "mass of the device"),
+        (lambda: coupled(zw.Device(damping=1, rate=1000), zw.Wall(1)), "the device.s mass"),
         (lambda: coupled(PADDLE, zw.Wall(1), 3), "known hand"),
         (lambda: coupled(PADDLE, zw.Wall(1), PrescribedMotion(positions=[0, 1])), "known hand"),
         (lambda: Hand(damping=-1), "no energy of its own"),

@@ -340,7 +340,9 @@ def _certain(device: Device, law: Environment) -> Device:
     """The device that the law is packed for; what the law does not depend on may be an interval."""
     if laws_of(law) and isinstance(device.delay, Interval):
         given = shown(device.delay, "s")
-        raise InputError(f"the delay is the interval {given}, and laws in a chain reckon with it: give one")
+        raise InputError(
+            f"the delay is the interval {given}, and laws in a chain reckon with one number of it"
+        )
     return least_friction(device)
 
 

@@ -245,7 +245,7 @@ def _values(each: Sequence[Coordinate], given: Mapping[str, float | str], what: 
         low, high = each[i].limits
         if not (np.isfinite(value) and low <= value <= high):
             bounds = from_to(low, high, each[i].unit) if np.isfinite(each[i].limits).any() else "finite"
-            raise InputError(f"hold: {each[i].name} can be {bounds}, got {shown(value, each[i].unit)}")
+            raise InputError(f"hold: {each[i].name} can be {bounds}, got {shown(value, each[i].unit, 6)}")
     return found
 
 

@@ -24,6 +24,7 @@ from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.answered import answered, answers, known
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
+from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.text import at_least, at_most, in_words, shown
 
 
@@ -211,7 +212,7 @@ def parameter_of(device: Device, environment: Environment, name: str) -> Paramet
     owner, _, key = name.rpartition(".")
     met = environment.met
     in_environment = {f.name for f in fields(met)} - {"exponent", "sample_period"}  # unit of K; the device's
-    in_device = {f.name for f in fields(device)} | {"rate"}
+    in_device = {*parameters_of(type(device)), "rate"}
     if key == "gain" and met.scaled(Fraction(1)) is not None:
         return _gain(device, environment)
     if owner in ("", "environment") and key in in_environment:
