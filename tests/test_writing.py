@@ -242,7 +242,7 @@ OUTPUTS = (
     ("identify session.csv", "-o", "x.toml"),
     ("diagnose shaking.csv wheel.toml", "-o", "x.toml"),
     ("tissue relaxation.csv", "-o", "x.toml"),
-    ("gains arms.yaml haptic-paddle", "-o", "x.yaml"),
+    ("gains arms.yaml", "-o", "x.yaml"),
     ("pair haptic-paddle --stiffness 50", "-o", "x.json"),
     ("links haptic-paddle", "-o", "x.json"),
     ("workspace arm.urdf --stiffness 100", "-o", "x.json"),
