@@ -261,7 +261,7 @@ def test_no_command_follows_a_link_that_leads_nowhere(command, option, name, tmp
     (tmp_path / name).symlink_to(tmp_path / "chosen by another")
     given = {word for word in command.split() if word.endswith((".csv", ".toml", ".yaml"))}
     for each in given:  # inputs that are not there would be told first
-        (tmp_path / each).touch()
+        (tmp_path / each).write_text("a: 1\n", encoding="utf-8")
     assert main([*command.split(), *option.split(), name]) == 2
     assert re.search("exists|leads nowhere|no folder", capsys.readouterr().err)
     assert {each.name for each in tmp_path.iterdir()} == {name, *given}
