@@ -10,6 +10,7 @@ and damping have put in tells how much of the rise is paid for.
 
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -34,7 +35,7 @@ wanted = np.where(inwards[:, None], soft, stiff)
 # the hand is inside, with what has been dissipated; outside, where nothing is stored, it is free.
 
 
-def naive(solids: np.ndarray) -> np.ndarray:
+def naive(solids: NDArray[np.float64]) -> NDArray[np.float64]:
     """μ0 u + μ1 e, e ← a (e + Δu), with the numbers of the moment."""
     e = before = 0.0
     forces = []
@@ -46,7 +47,7 @@ def naive(solids: np.ndarray) -> np.ndarray:
     return np.array(forces)
 
 
-def put_in(forces: np.ndarray) -> np.ndarray:
+def put_in(forces: NDArray[np.float64]) -> NDArray[np.float64]:
     """What hand and damping have put in: Σ f Δx + (b/T) Δx² [J]; below 0 the hand has got energy out."""
     moved = np.diff(position)
     return np.append(0.0, np.cumsum(forces[:-1] * moved + b / T * moved**2))

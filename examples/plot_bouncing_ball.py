@@ -11,6 +11,7 @@ what it took.  The sampled one gives more.
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -28,7 +29,7 @@ sampled = zw.simulate(ball, wall, finger, 0.4, initial_position=-0.02, points_pe
 meant = zw.simulate(ball.replace(sample_period=1e-5), wall, finger, 0.4, initial_position=-0.02)
 
 
-def peaks(trace: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+def peaks(trace: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """How far the ball comes back after each strike [m], and when."""
     x, time = trace.position.values, trace.time.values
     turn = np.flatnonzero((x[1:-1] < x[:-2]) & (x[1:-1] <= x[2:])) + 1

@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -28,7 +29,7 @@ Need = Callable[[float, float], float]
 # render is found along rays of constant K_c T : 2 B_c, from the need of one coupling on each.
 
 
-def edge(need: Need) -> np.ndarray:
+def edge(need: Need) -> NDArray[np.float64]:
     """K_c [N/m] and B_c [N·s/m] at the edge; need(K_c, B_c) in N·s/m."""
     shares = np.linspace(0, 1, 121)
     couplings = [(float(share) / T, float(1 - share) / 2) for share in shares]

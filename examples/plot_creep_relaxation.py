@@ -11,6 +11,7 @@ and a Maxwell body of the same springs and dashpots.
 
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.model.environment import Environment
@@ -36,7 +37,7 @@ time = np.linspace(-0.2, 2.0, 1101)
 # does not stop, nor come back.
 
 
-def under_a_pulse(body: Environment) -> np.ndarray:
+def under_a_pulse(body: Environment) -> NDArray[np.float64]:
     return zw.tissue.creep(body, time) - zw.tissue.creep(body, time - 1.0)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -67,7 +68,7 @@ def groups(scores: xr.Dataset, wanted: float) -> list[tuple[tuple[float, float, 
     return sorted(found)
 
 
-def spread(heights: Sequence[float]) -> np.ndarray:
+def spread(heights: Sequence[float]) -> NDArray[np.float64]:
     """The same order, no two closer than APART."""
     order, result = np.argsort(heights, kind="stable"), np.array(heights)
     for before, after in zip(order, order[1:], strict=False):

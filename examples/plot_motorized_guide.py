@@ -10,6 +10,7 @@ protocol is a virtual experiment.
 
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -26,7 +27,7 @@ TABLE_2 = """0 5322 5350; 0.1 5238 5242; 0.2 5100 5082; 0.3 5126 5158; 0.4 5100 
 TABLE_3 = "0.5 5982 5754; 1 5542 5604; 2 4904 4734; 3 3826 3806; 4 3574 3576; 5 3374 3310"
 
 
-def published(table: str) -> np.ndarray:
+def published(table: str) -> NDArray[np.float64]:
     return np.array([row.split() for row in table.split(";")], dtype=float).T
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -233,7 +234,7 @@ tried = np.arange(70.0, 131.0)
 pushes, bends = np.array(forces), np.array([0.3e-6, 0.5e-6, 1e-6, 2e-6])
 
 
-def changes_of_force(period: float) -> np.ndarray:
+def changes_of_force(period: float) -> NDArray[np.float64]:
     """Of the last second of two, on every wall by every bend and push; semi-implicit Euler, 50 µs."""
     mass, drag, friction, count, dt = 0.042, 1.85, 0.12, 2.24e-3, 5e-5  # handle and finger
     shape = len(tried), len(bends), len(pushes)
@@ -246,7 +247,7 @@ def changes_of_force(period: float) -> np.ndarray:
         v += dt / mass * (pushes * min(i * dt / 0.5, 1.0) - wall - friction / bend * z - drag * v)
         x += v * dt
         z = np.minimum(np.maximum(z + v * dt, -bend), bend)
-    return found
+    return np.asarray(found)
 
 
 soon, late = (tried[np.argmax(changes_of_force(period) > 10, axis=0)] for period in (0.001, 0.003))

@@ -13,6 +13,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 import zwidth as zw
 from zwidth.show import plots
@@ -38,11 +39,11 @@ def run(environment: zw.Wall | zw.rendering.Rendered, duration: float = 1.0, **d
     )
 
 
-def peaks(trace: xr.Dataset) -> np.ndarray:
+def peaks(trace: xr.Dataset) -> NDArray[np.float64]:
     """How far the ball comes back after each strike [mm]."""
-    x: np.ndarray = trace.position.values
+    x: NDArray[np.float64] = trace.position.values
     turn = np.flatnonzero((x[1:-1] < x[:-2]) & (x[1:-1] <= x[2:])) + 1
-    return -1e3 * x[turn]
+    return np.asarray(-1e3 * x[turn])
 
 
 loops = {

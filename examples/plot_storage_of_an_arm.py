@@ -9,6 +9,7 @@ become.  Here both are followed along a motion of two links that are swung by ra
 
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import zwidth as zw
@@ -22,12 +23,12 @@ damping = np.array([[0.03, 0.007], [0.007, 0.02]])  # N·m·s/rad
 # Two links in a horizontal plane: inertia that depends on the elbow, viscous joints, no gravity.
 
 
-def inertia(elbow: float) -> np.ndarray:
+def inertia(elbow: float) -> NDArray[np.float64]:
     c = 0.006 * np.cos(elbow)
     return np.array([[0.021 + 2 * c, 0.005 + c], [0.005 + c, 0.005]])
 
 
-def motion(t: float, state: np.ndarray, torque: np.ndarray) -> np.ndarray:
+def motion(t: float, state: NDArray[np.float64], torque: NDArray[np.float64]) -> NDArray[np.float64]:
     elbow, v = state[1], state[2:]
     coriolis = 0.006 * np.sin(elbow) * np.array([-v[1] * (2 * v[0] + v[1]), v[0] ** 2])
     return np.concatenate([v, np.linalg.solve(inertia(elbow), torque - coriolis - damping @ v)])

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 import zwidth as zw
 
@@ -59,7 +60,7 @@ def relaxation(path: Path) -> None:
     _write(path, table, "time_s,position_mm,force_N", ("%.3f", "%.4f", "%.3f"))
 
 
-def _strokes(duration: float, many: int, rng: np.random.Generator) -> np.ndarray:
+def _strokes(duration: float, many: int, rng: np.random.Generator) -> NDArray[np.float64]:
     """Half a cosine from one turning point to the next, some 5 cm apart, lengths and times varied [m]."""
     ends = 0.025 * (-1.0) ** np.arange(many + 1) * np.exp(0.15 * rng.normal(size=many + 1))
     samples = np.rint(1000 * duration * np.exp(0.15 * rng.normal(size=many))).astype(int)
@@ -71,7 +72,7 @@ def _strokes(duration: float, many: int, rng: np.random.Generator) -> np.ndarray
     )
 
 
-def _write(path: Path, table: np.ndarray, names: str, formats: tuple[str, ...]) -> None:
+def _write(path: Path, table: NDArray[np.float64], names: str, formats: tuple[str, ...]) -> None:
     head = f"# Simulated by examples/sample_logs.py of zwidth, not measured\n{names}"
     np.savetxt(path, table, delimiter=",", header=head, comments="", fmt=formats, newline="\n")
 
