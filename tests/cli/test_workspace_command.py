@@ -194,7 +194,7 @@ def test_the_least_damping_is_shown(run):
     words = run(f"{HAPLY} --stiffness 800 --all", 1).words
     assert "what to change" in words
     assert "all joints" in words
-    assert re.search(r"least in all .* in q1, .* in q2, together", words)
+    assert re.search(r"least in all .* in joint 1, .* in joint 2, together", words)
     words = run("workspace two-link --joint-damping 0.02,0.012 --stiffness 800 --all", 1).words
     assert re.search(r"least in all [0-9.]+ m?N·m·s/rad more damping in q1; less than [0-9.]+", words)
 
