@@ -198,6 +198,16 @@ def test_a_refutation_at_the_worst_of_an_interval_is_not_one_of_the_whole_interv
     assert not any("every value" in line for line in found.assumptions)
 
 
+@pytest.mark.parametrize(
+    "plays_no_part", [{"mass": (1, 2)}, {"force_limit": (50, 60)}, {"supply_voltage": (9, 12)}]
+)
+def test_an_interval_that_plays_no_part_leaves_a_refutation_as_it_is(plays_no_part):
+    """It has no worst end, at which alone the motion would be one."""
+    device = zw.Device(damping=1, coulomb_friction=1, resolution=1e-4, rate=1000, **plays_no_part)
+    found = zw.check(device, zw.NonlinearSpring([-0.001, 0, 0.001], [-8, 0, 8]))
+    assert (found.outcome, found.witness.verify()) == ("active", True)
+
+
 def test_values_on_one_board_of_counts_say_nothing_of_counts_of_another_size():
     """What value iteration proves holds for the counts it was played with, and not for smaller ones."""
     slew = zw.render(zw.Wall(770), SlewLimit(rate=1000))

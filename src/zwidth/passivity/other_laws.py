@@ -69,11 +69,15 @@ def check_other(
         verdict = _row(worst, law, asked, closed, values)
     else:
         raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
-    if verdict.outcome == "active" and not device.is_certain:  # at the worst: more friction may hold it
+    ranged = any(isinstance(getattr(device, key), Interval) for key in _WITH_A_WORST)
+    if verdict.outcome == "active" and ranged:  # at the worst: more friction may hold it
         return replace(verdict, outcome="undecided", scope=asked, finding="depends on values")
     if isinstance(device.resolution, Interval):  # values were iterated on counts of one size
         return replace(verdict, available_storage=None)
     return verdict
+
+
+_WITH_A_WORST = ("damping", "coulomb_friction", "resolution")
 
 
 def _at_its_worst(device: Device) -> Device:
